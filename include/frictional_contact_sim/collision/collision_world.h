@@ -1,0 +1,90 @@
+#pragma once
+/**
+ * @file collision_world.h
+ * @brief Contact points between the shapes of several robots and the ground.
+ *
+ * FCL gives the broad phase and, for convex pairs, the first witness; contact points, gaps and normals are recomputed
+ * in closed form from the supporting features (face, edge, vertex, primitive) to round-off. At most 8 points a pair.
+ */
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frictional_contact_sim/model/multibody_data.h"
+#include "frictional_contact_sim/model/multibody_model.h"
+
+namespace frictional_contact_sim
+{
+/** @brief One contact point between shape_a and shape_b; the normal points from b to a. */
+struct ContactPoint
+{
+  std::uint64_t id = 0;                                 ///< same pair of features: same id, as long as it persists
+  int shape_a = 0;                                      ///< handle from addRobot / addStatic
+  int shape_b = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< world, midway between the two surface points [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< world, unit, from b to a
+  double gap = 0.0;                                     ///< along the normal, negative = penetration [m]
+};
+
+/** @brief What a shape handle stands for. */
+struct ShapeInfo
+{
+  int robot = -1;     ///< index from addRobot; -1 for static shapes
+  int body = -1;      ///< body in the robot's model; -1 for static shapes
+  int frame = -1;     ///< URDF link in the robot's model
+  std::string link;   ///< URDF link name ("ground" for the plane)
+  std::string name;   ///< collision name
+};
+
+class CollisionWorld
+{
+public:
+  CollisionWorld();
+  ~CollisionWorld();
+  CollisionWorld(CollisionWorld&&) noexcept;
+  CollisionWorld& operator=(CollisionWorld&&) noexcept;
+
+  /**
+   * @brief Adds all shapes of a robot; loads its meshes (convex hulls). Pairs on one body, and on bodies joined by one
+   * joint, never collide; nor do shapes of a fixed base body with static shapes.
+   * @return index of the robot
+   * @throws ModelError for a mesh that cannot be read: file and reason
+   */
+  int addRobot(const MultibodyModel& model);
+  /** @brief Adds a shape fixed in the world, the ground plane for example. @return shape handle */
+  int addStatic(const Geometry& geometry, const Eigen::Isometry3d& pose, const std::string& name);
+
+  /** @brief Two links of a robot never collide. @throws std::invalid_argument naming an unknown link */
+  void disablePair(int robot, const std::string& link_1, const std::string& link_2);
+
+  /**
+   * @brief Disables the pairs of links *within one robot* that overlap now (initial pose). Needs setPoses.
+   * @return "link_1 - link_2" of each pair disabled
+   */
+  std::vector<std::string> disableOverlaps();
+
+  /** @brief Body poses of a robot, from its data. */
+  void setPoses(int robot, const MultibodyData& data);
+
+  /**
+   * @brief Contact points with gap <= margin, ordered by (shape_a, shape_b, feature): deterministic. No allocation
+   * after warm-up; the list is valid until the next call.
+   */
+  const std::vector<ContactPoint>& detect(double margin);
+
+  /** @brief Lowest z over all points of all shapes of a robot at the poses set [m]; +infinity without shapes. */
+  double lowestPoint(int robot) const;
+
+  int shapeCount() const;
+  const ShapeInfo& shape(int handle) const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,129 @@
+#pragma once
+/**
+ * @file multibody_model.h
+ * @brief A tree of rigid bodies in Lagrangian coordinates: the constant part (Model of Model / Data / free functions).
+ *
+ * Bodies are URDF links after lumping fixed joints; body i moves relative to its parent (-1 = world) by joint i, and
+ * parents come before children. Body 0 is the root; its joint is FLOATING or FIXED (the base). Every URDF link, lumped
+ * or not, is a Frame of its body.
+ *
+ * Coordinates of a joint, in its joint frame on the parent (q: nq numbers, v: nv numbers):
+ *   REVOLUTE, CONTINUOUS  angle [rad]                                     | angular velocity about the axis
+ *   PRISMATIC             displacement [m]                                | velocity along the axis
+ *   PLANAR                x, y [m] in the plane normal to the axis, angle | their time derivatives
+ *   FLOATING              x, y, z [m], quaternion x y z w                 | velocity of the child origin, angular
+ *                                                                           velocity, both in the axes of the joint
+ *                                                                           frame on the parent (the world for a base)
+ *   FIXED (base only)     -                                               | -
+ * Integration of a floating joint: p <- p + dt v, quaternion <- exp(dt w) quaternion.
+ */
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/model/geometry.h"
+
+namespace frictional_contact_sim
+{
+enum class JointType
+{
+  REVOLUTE,
+  CONTINUOUS,
+  PRISMATIC,
+  PLANAR,
+  FLOATING,
+  FIXED
+};
+
+/** @brief Width of a joint type in q. */
+int positionSize(JointType type);
+/** @brief Width of a joint type in v. */
+int velocitySize(JointType type);
+
+struct RigidInertia
+{
+  double mass = 0.0;                                         ///< [kg]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();          ///< centre of mass in the body frame [m]
+  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();      ///< about the centre of mass, body axes [kg m^2]
+};
+
+/** @brief URDF's <limit>; without one, positions are unbounded and effort is unlimited. */
+struct JointLimit
+{
+  double lower = -std::numeric_limits<double>::infinity();   ///< [rad] or [m]
+  double upper = std::numeric_limits<double>::infinity();    ///< [rad] or [m]
+  double effort = std::numeric_limits<double>::infinity();   ///< [N m] or [N]
+  double velocity = std::numeric_limits<double>::infinity(); ///< [rad/s] or [m/s]
+};
+
+struct Mimic
+{
+  int joint = -1;           ///< index of the joint that is followed, -1 = none
+  double multiplier = 1.0;  ///< q = multiplier q_joint + offset
+  double offset = 0.0;
+};
+
+struct Joint
+{
+  std::string name;  ///< URDF name; the base's is empty
+  JointType type = JointType::FIXED;
+  int parent = -1;   ///< body this joint hangs on, -1 = world
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< joint frame in the parent body frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();              ///< unit vector, joint frame (PLANAR: plane normal)
+  int q_index = 0;   ///< first coordinate in q
+  int v_index = 0;   ///< first coordinate in v
+  JointLimit limit;
+  double damping = 0.0;       ///< viscous [N m s/rad] or [N s/m]
+  double dry_friction = 0.0;  ///< Coulomb threshold [N m] or [N]
+  Mimic mimic;
+};
+
+/** @brief A moving body: one or more URDF links rigidly joined. */
+struct Body
+{
+  std::string name;  ///< of its root link
+  RigidInertia inertia;
+};
+
+/** @brief A URDF link in the body that carries it. */
+struct Frame
+{
+  std::string name;
+  int body = 0;
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< link frame in the body frame
+};
+
+struct CollisionShape
+{
+  std::string name;  ///< URDF collision name, or link_collision_k
+  int frame = 0;     ///< index of the URDF link
+  int body = 0;
+  Geometry geometry;
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< shape frame in the body frame
+  double friction = -1.0;  ///< Gazebo's mu1 where given, else negative: the material decides
+};
+
+struct MultibodyModel
+{
+  std::string name;
+  std::vector<Body> bodies;    ///< parents first
+  std::vector<Joint> joints;   ///< joint i moves body i
+  std::vector<Frame> frames;
+  std::vector<CollisionShape> shapes;
+  int nq = 0;
+  int nv = 0;
+  std::vector<int> dof_parent;  ///< nv: the velocity coordinate before this one on the way to the root, -1 at the root
+  std::vector<int> dof_body;    ///< nv: body moved by the coordinate
+
+  /** @return index or -1 */
+  int findJoint(const std::string& joint_name) const;
+  int findFrame(const std::string& link_name) const;
+  double totalMass() const;
+};
+
+/** @brief Fills nq, nv, q_index, v_index, dof_parent, dof_body from the joints. Call after editing joints by hand. */
+void finalize(MultibodyModel& model);
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,100 @@
+#pragma once
+/**
+ * @file solver.h
+ * @brief What every method offers: solve(problem, guess) -> SolverResult. Nothing else is public.
+ */
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/problem/delassus_problem.h"
+#include "frictional_contact_sim/problem/incremental_problem.h"
+
+namespace frictional_contact_sim
+{
+enum class SolverStatus
+{
+  NOT_RUN,
+  CONVERGED,
+  MAX_ITERATIONS,
+  TIME_LIMIT,
+  STAGNATED,
+  NUMERICAL_FAILURE,
+  STOPPED_BY_USER
+};
+
+/** @brief The constant's name, for messages. */
+const char* toString(SolverStatus status);
+
+/** @brief Stopping rule common to all methods. Budgets count iterations; time_limit is for the tools only. */
+struct StoppingOptions
+{
+  double tolerance = 1e-8;    ///< on the residual E of problem/residual.h [-], > 0
+  int max_iterations = 1000;  ///< outer iterations of the method, >= 0
+  double time_limit = 0.0;    ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
+
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+struct SolverResult
+{
+  SolverStatus status = SolverStatus::NOT_RUN;
+  Solution solution;
+  int iterations = 0;
+  double residual = 0.0;               ///< E, evaluated by Solver::solve, not by the method
+  double seconds = 0.0;                ///< wall-clock time of the call
+  std::string solver;                  ///< registry name of the method whose answer this is
+  std::vector<std::string> tried;      ///< names of the methods run, in order (portfolio)
+  std::string message;                 ///< why it stopped, one line, empty when converged
+};
+
+class DelassusReduction;
+
+class Solver
+{
+public:
+  explicit Solver(std::string name);
+  virtual ~Solver();
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
+
+  /**
+   * @brief Solves the local problem. Checks shapes, times the call, evaluates the residual, withdraws CONVERGED when it
+   * does not hold.
+   * @param guess start (u is ignored); nullptr = cold start at r = 0
+   * @param result overwritten; storage is reused, so a result kept between calls makes the call free of allocation
+   * @throws std::invalid_argument on wrong shapes
+   */
+  void solve(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
+  /** @brief The same for the global problem: reduces it to the local one, solves, recovers v and lambda. */
+  void solve(const IncrementalProblem& problem, const Solution* guess, SolverResult& result);
+
+  SolverResult solve(const DelassusProblem& problem, const Solution* guess = nullptr);
+  SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
+
+  const std::string& name() const
+  {
+    return name_;
+  }
+  /** @brief The stopping rule, changeable between calls. */
+  void setStopping(const StoppingOptions& stopping);
+  const StoppingOptions& stopping() const
+  {
+    return stopping_;
+  }
+
+protected:
+  /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
+  virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
+  bool timeIsUp() const;
+
+private:
+  std::string name_;
+  StoppingOptions stopping_;
+  std::chrono::steady_clock::time_point start_;
+  std::unique_ptr<DelassusReduction> reduction_;
+};
+
+}  // namespace frictional_contact_sim
