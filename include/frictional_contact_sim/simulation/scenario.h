@@ -13,52 +13,14 @@
 #include <utility>
 #include <vector>
 
+#include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/dynamics/contact_law.h"
+#include "frictional_contact_sim/dynamics/material.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
 {
-struct Material
-{
-  double friction = 0.8;     ///< Coulomb coefficient [-] >= 0
-  double restitution = 0.0;  ///< normal, Moreau [-] in [0, 1]
-};
-
-struct MaterialTable
-{
-  Material fallback;                                              ///< `default`
-  std::map<std::string, Material> materials;                      ///< single materials by name
-  std::map<std::pair<std::string, std::string>, Material> pairs;  ///< names in alphabetical order
-};
-
-/** @brief Servo or effort on one joint. Unset numbers (NaN) get defaults from the joint's inertia (dynamics/servo.h). */
-struct JointCommand
-{
-  enum class Mode
-  {
-    EFFORT,
-    POSITION,
-    VELOCITY
-  };
-  Mode mode = Mode::EFFORT;
-  double target = 0.0;                                           ///< [N m] / [rad] / [rad/s], or [N] / [m] / [m/s]
-  double kp = std::numeric_limits<double>::quiet_NaN();          ///< stiffness [N m/rad] or [N/m]
-  double kd = std::numeric_limits<double>::quiet_NaN();          ///< damping [N m s/rad] or [N s/m]
-  double max_effort = std::numeric_limits<double>::infinity();   ///< besides the URDF's effort limit
-};
-
-/** @brief A wrench on a link during [from, until). */
-struct ExternalWrench
-{
-  std::string link;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the link frame [m]
-  bool world_frame = true;                           ///< axes of force and torque: world, else the link's
-  double from = 0.0;                                 ///< [s]
-  double until = std::numeric_limits<double>::infinity();
-};
-
 struct JointInit
 {
   double position = 0.0;
@@ -87,12 +49,6 @@ struct GroundSpec
 {
   double height = 0.0;           ///< [m]
   std::optional<double> friction;  ///< material `ground`; unset: the table decides
-};
-
-enum class ContactLawForm
-{
-  GAP,      ///< DESIGN.md: u_N >= -max(gap, 0)/dt and its companions
-  VELOCITY  ///< the thesis's plain law: u_N >= 0 where gap <= 0 (Cadoux 2009, ch. 2.2)
 };
 
 struct Scenario

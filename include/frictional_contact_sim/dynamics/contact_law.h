@@ -1,0 +1,45 @@
+#pragma once
+/**
+ * @file contact_law.h
+ * @brief The normal law of a contact over one time step: by which velocity the complementarity law is shifted.
+ *
+ * The law acts on u_N + shift >= 0. With the gap and old normal velocity u_old at the midpoint configuration:
+ *
+ *   closing with restitution e > 0 (u_old < -threshold and gap + dt u_old <= 0)   u_N >= -e u_old
+ *   gap >= 0                                                                      u_N >= -gap/dt
+ *   gap < 0                                                                       u_N >= min(-gap/dt, v_recover)
+ *
+ * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (DESIGN.md, "The time step"). The thesis's
+ * plain velocity law (Cadoux 2009, 1.1.5 and 2.2: u_N + e u_old >= 0 where gap <= 0, nothing else) stays selectable.
+ */
+namespace frictional_contact_sim
+{
+enum class ContactLawForm
+{
+  GAP,      ///< the rules above
+  VELOCITY  ///< the thesis's plain law
+};
+
+struct NormalLaw
+{
+  ContactLawForm form = ContactLawForm::GAP;
+  double closing_speed = 1e-6;     ///< threshold: slower approaches do not bounce [m/s] > 0
+  double recovery_speed = 0.01;    ///< v_recover: fastest separation of an initial penetration [m/s] >= 0
+};
+
+struct NormalShift
+{
+  bool active = true;    ///< false: the contact takes no part in the step (plain law, gap > 0)
+  bool closing = false;  ///< an impact
+  double shift = 0.0;    ///< [m/s]
+};
+
+/** @brief The shift of one contact or joint limit. @param dt time step [s] > 0 */
+NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, double restitution, double dt);
+
+/** @brief The same for an impact at one instant (dt = 0): u_N >= -e min(u_old, 0) where gap <= CONTACT_GAP. */
+NormalShift impactShift(double gap, double old_velocity, double restitution);
+
+constexpr double CONTACT_GAP = 1e-9;  ///< closer than this is touching, for the impact solve at a given state [m]
+
+}  // namespace frictional_contact_sim

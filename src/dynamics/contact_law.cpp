@@ -1,0 +1,35 @@
+#include "frictional_contact_sim/dynamics/contact_law.h"
+
+#include <algorithm>
+
+namespace frictional_contact_sim
+{
+NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, double restitution, double dt)
+{
+  NormalShift result;
+  const bool approaching = old_velocity < -law.closing_speed;
+  if (law.form == ContactLawForm::VELOCITY)
+  {
+    result.active = gap <= 0.0;
+    result.closing = result.active && approaching;
+    result.shift = result.closing ? restitution * old_velocity : 0.0;
+    return result;
+  }
+  result.closing = approaching && gap + dt * old_velocity <= 0.0;
+  if (result.closing && restitution > 0.0)
+    result.shift = restitution * old_velocity;
+  else
+    result.shift = gap >= 0.0 ? gap / dt : -std::min(-gap / dt, law.recovery_speed);
+  return result;
+}
+
+NormalShift impactShift(double gap, double old_velocity, double restitution)
+{
+  NormalShift result;
+  result.active = gap <= CONTACT_GAP;
+  result.closing = result.active && old_velocity < 0.0;
+  result.shift = restitution * std::min(old_velocity, 0.0);
+  return result;
+}
+
+}  // namespace frictional_contact_sim
