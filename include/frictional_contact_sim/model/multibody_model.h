@@ -10,7 +10,7 @@
  * Coordinates of a joint, in its joint frame on the parent (q: nq numbers, v: nv numbers):
  *   REVOLUTE, CONTINUOUS  angle [rad]                                     | angular velocity about the axis
  *   PRISMATIC             displacement [m]                                | velocity along the axis
- *   PLANAR                x, y [m] in the plane normal to the axis, angle | their time derivatives
+ *   PLANAR                x, y [m] along planarAxes(axis), angle          | their time derivatives
  *   FLOATING              x, y, z [m], quaternion x y z w                 | velocity of the child origin, angular
  *                                                                           velocity, both in the axes of the joint
  *                                                                           frame on the parent (the world for a base)
@@ -42,25 +42,32 @@ int positionSize(JointType type);
 /** @brief Width of a joint type in v. */
 int velocitySize(JointType type);
 
+/**
+ * @brief The two in-plane directions of a PLANAR joint: columns, unit, with the normal a right-handed triad.
+ * Normal z gives x and y; any other normal turns them by the least rotation that takes z to the normal (z to -z: about
+ * x).
+ */
+Eigen::Matrix<double, 3, 2> planarAxes(const Eigen::Vector3d& normal);
+
 struct RigidInertia
 {
-  double mass = 0.0;                                         ///< [kg]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();          ///< centre of mass in the body frame [m]
-  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();      ///< about the centre of mass, body axes [kg m^2]
+  double mass = 0.0;  ///< [kg]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centre of mass in the body frame [m]
+  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();  ///< about the centre of mass, body axes [kg m^2]
 };
 
 /** @brief URDF's <limit>; without one, positions are unbounded and effort is unlimited. */
 struct JointLimit
 {
-  double lower = -std::numeric_limits<double>::infinity();   ///< [rad] or [m]
-  double upper = std::numeric_limits<double>::infinity();    ///< [rad] or [m]
-  double effort = std::numeric_limits<double>::infinity();   ///< [N m] or [N]
-  double velocity = std::numeric_limits<double>::infinity(); ///< [rad/s] or [m/s]
+  double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
+  double upper = std::numeric_limits<double>::infinity();  ///< [rad] or [m]
+  double effort = std::numeric_limits<double>::infinity();  ///< [N m] or [N]
+  double velocity = std::numeric_limits<double>::infinity();  ///< [rad/s] or [m/s]
 };
 
 struct Mimic
 {
-  int joint = -1;           ///< index of the joint that is followed, -1 = none
+  int joint = -1;  ///< index of the joint that is followed, -1 = none
   double multiplier = 1.0;  ///< q = multiplier q_joint + offset
   double offset = 0.0;
 };
@@ -69,13 +76,13 @@ struct Joint
 {
   std::string name;  ///< URDF name; the base's is empty
   JointType type = JointType::FIXED;
-  int parent = -1;   ///< body this joint hangs on, -1 = world
+  int parent = -1;  ///< body this joint hangs on, -1 = world
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< joint frame in the parent body frame
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();              ///< unit vector, joint frame (PLANAR: plane normal)
-  int q_index = 0;   ///< first coordinate in q
-  int v_index = 0;   ///< first coordinate in v
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector, joint frame (PLANAR: plane normal)
+  int q_index = 0;  ///< first coordinate in q
+  int v_index = 0;  ///< first coordinate in v
   JointLimit limit;
-  double damping = 0.0;       ///< viscous [N m s/rad] or [N s/m]
+  double damping = 0.0;  ///< viscous [N m s/rad] or [N s/m]
   double dry_friction = 0.0;  ///< Coulomb threshold [N m] or [N]
   Mimic mimic;
 };
@@ -98,7 +105,7 @@ struct Frame
 struct CollisionShape
 {
   std::string name;  ///< URDF collision name, or link_collision_k
-  int frame = 0;     ///< index of the URDF link
+  int frame = 0;  ///< index of the URDF link
   int body = 0;
   Geometry geometry;
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< shape frame in the body frame
@@ -108,14 +115,15 @@ struct CollisionShape
 struct MultibodyModel
 {
   std::string name;
-  std::vector<Body> bodies;    ///< parents first
-  std::vector<Joint> joints;   ///< joint i moves body i
+  std::vector<Body> bodies;  ///< parents first
+  std::vector<Joint> joints;  ///< joint i moves body i
   std::vector<Frame> frames;
   std::vector<CollisionShape> shapes;
   int nq = 0;
   int nv = 0;
   std::vector<int> dof_parent;  ///< nv: the velocity coordinate before this one on the way to the root, -1 at the root
-  std::vector<int> dof_body;    ///< nv: body moved by the coordinate
+  std::vector<int> dof_body;  ///< nv: body moved by the coordinate
+  std::vector<int> body_dof;  ///< bodies: last velocity coordinate on the way from the root to the body, -1 = none
 
   /** @return index or -1 */
   int findJoint(const std::string& joint_name) const;
@@ -123,7 +131,12 @@ struct MultibodyModel
   double totalMass() const;
 };
 
-/** @brief Fills nq, nv, q_index, v_index, dof_parent, dof_body from the joints. Call after editing joints by hand. */
+/**
+ * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_body, body_dof from the joints. Call after editing joints by
+ * hand.
+ * @throws std::invalid_argument when joints and bodies differ in number, a parent does not come first, or an axis is
+ * not a unit vector
+ */
 void finalize(MultibodyModel& model);
 
 }  // namespace frictional_contact_sim

@@ -1,0 +1,18 @@
+#include "frictional_contact_sim/model/multibody_data.h"
+
+namespace frictional_contact_sim
+{
+MultibodyData::MultibodyData(const MultibodyModel& model)
+  : body_pose(model.bodies.size(), Eigen::Isometry3d::Identity())
+  , motion_subspace(Matrix6Xd::Zero(6, model.nv))
+  , body_inertia(model.bodies.size())
+  , body_velocity(model.bodies.size(), Vector6d::Zero())
+  , mass_matrix(Eigen::MatrixXd::Zero(model.nv, model.nv))
+  , mass_factor(Eigen::MatrixXd::Zero(model.nv, model.nv))
+  , composite_inertia(model.bodies.size())
+  , body_acceleration(model.bodies.size(), Vector6d::Zero())
+  , body_force(model.bodies.size(), Vector6d::Zero())
+{
+}
+
+}  // namespace frictional_contact_sim
