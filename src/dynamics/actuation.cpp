@@ -9,12 +9,11 @@ ServoImpulse servoImpulse(const JointCommand& command, double q, double v, doubl
   switch (command.mode)
   {
     case JointCommand::Mode::EFFORT:
-      return { dt * command.target, 0.0 };
+      return {dt * command.target, 0.0};
     case JointCommand::Mode::POSITION:
-      return { dt * command.kp * (command.target - q - 0.25 * dt * v),
-               0.25 * dt * dt * command.kp + dt * command.kd };
+      return {dt * command.kp * (command.target - q - 0.25 * dt * v), 0.25 * dt * dt * command.kp + dt * command.kd};
     case JointCommand::Mode::VELOCITY:
-      return { dt * command.kd * command.target, dt * command.kd };
+      return {dt * command.kd * command.target, dt * command.kd};
   }
   return {};
 }

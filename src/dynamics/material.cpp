@@ -17,9 +17,9 @@ Material pairMaterial(const MaterialTable& table, const SurfaceSide& a, const Su
     return entry->second;
   const Material& material_a = table.find(a.material);
   const Material& material_b = table.find(b.material);
-  return { std::min(a.friction < 0.0 ? material_a.friction : a.friction,
-                    b.friction < 0.0 ? material_b.friction : b.friction),
-           std::min(material_a.restitution, material_b.restitution) };
+  return {std::min(a.friction < 0.0 ? material_a.friction : a.friction,
+                   b.friction < 0.0 ? material_b.friction : b.friction),
+          std::min(material_a.restitution, material_b.restitution)};
 }
 
 }  // namespace frictional_contact_sim

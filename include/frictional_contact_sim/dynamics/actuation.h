@@ -27,14 +27,14 @@ struct JointCommand
 {
   enum class Mode
   {
-    EFFORT,    ///< constant effort `target`
+    EFFORT,  ///< constant effort `target`
     POSITION,  ///< kp, kd towards position `target` at rest
-    VELOCITY   ///< kd towards velocity `target`
+    VELOCITY  ///< kd towards velocity `target`
   };
   Mode mode = Mode::EFFORT;
-  double target = 0.0;                                          ///< [N m] / [rad] / [rad/s], or [N] / [m] / [m/s]
-  double kp = std::numeric_limits<double>::quiet_NaN();         ///< stiffness [N m/rad] or [N/m], >= 0
-  double kd = std::numeric_limits<double>::quiet_NaN();         ///< damping [N m s/rad] or [N s/m], >= 0
+  double target = 0.0;  ///< [N m] / [rad] / [rad/s], or [N] / [m] / [m/s]
+  double kp = std::numeric_limits<double>::quiet_NaN();  ///< stiffness [N m/rad] or [N/m], >= 0
+  double kd = std::numeric_limits<double>::quiet_NaN();  ///< damping [N m s/rad] or [N s/m], >= 0
   double max_effort = std::numeric_limits<double>::infinity();  ///< [N m] or [N], besides the URDF's effort limit
 };
 
@@ -42,18 +42,18 @@ struct JointCommand
 struct ExternalWrench
 {
   std::string link;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< where the force acts, in the link frame [m]
-  bool world_frame = true;                           ///< axes of force and torque: world, else the link's
-  double from = 0.0;                                 ///< [s]
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< where the force acts, in the link frame [m]
+  bool world_frame = true;  ///< axes of force and torque: world, else the link's
+  double from = 0.0;  ///< [s]
   double until = std::numeric_limits<double>::infinity();
 };
 
 /** @brief dt tau = offset - stiffness v_k+1. */
 struct ServoImpulse
 {
-  double offset = 0.0;     ///< c [N s] or [N m s]
+  double offset = 0.0;  ///< c [N s] or [N m s]
   double stiffness = 0.0;  ///< K [kg] or [kg m^2], zero for a constant effort
 };
 

@@ -16,22 +16,22 @@ namespace frictional_contact_sim
 {
 enum class ContactLawForm
 {
-  GAP,      ///< the rules above
+  GAP,  ///< the rules above
   VELOCITY  ///< the thesis's plain law
 };
 
 struct NormalLaw
 {
   ContactLawForm form = ContactLawForm::GAP;
-  double closing_speed = 1e-6;     ///< threshold: slower approaches do not bounce [m/s] > 0
-  double recovery_speed = 0.01;    ///< v_recover: fastest separation of an initial penetration [m/s] >= 0
+  double closing_speed = 1e-6;  ///< threshold: slower approaches do not bounce [m/s] > 0
+  double recovery_speed = 0.01;  ///< v_recover: fastest separation of an initial penetration [m/s] >= 0
 };
 
 struct NormalShift
 {
-  bool active = true;    ///< false: the contact takes no part in the step (plain law, gap > 0)
+  bool active = true;  ///< false: the contact takes no part in the step (plain law, gap > 0)
   bool closing = false;  ///< an impact
-  double shift = 0.0;    ///< [m/s]
+  double shift = 0.0;  ///< [m/s]
 };
 
 /** @brief The shift of one contact or joint limit. @param dt time step [s] > 0 */

@@ -11,14 +11,14 @@ namespace frictional_contact_sim
 {
 struct Material
 {
-  double friction = 0.8;     ///< Coulomb coefficient [-] >= 0
+  double friction = 0.8;  ///< Coulomb coefficient [-] >= 0
   double restitution = 0.0;  ///< of the normal velocity, Moreau's rule [-] in [0, 1]
 };
 
 struct MaterialTable
 {
-  Material fallback;                                              ///< `default`: of every name without its own entry
-  std::map<std::string, Material> materials;                      ///< by name
+  Material fallback;  ///< `default`: of every name without its own entry
+  std::map<std::string, Material> materials;  ///< by name
   std::map<std::pair<std::string, std::string>, Material> pairs;  ///< names in alphabetical order
 
   /** @brief The material's own values. */

@@ -31,10 +31,10 @@ struct BodySpec
 {
   std::string name;
   std::string urdf_path;  ///< file, or empty when urdf_xml is given
-  std::string urdf_xml;   ///< the document itself (robot_description)
+  std::string urdf_xml;  ///< the document itself (robot_description)
   BaseType base = BaseType::AUTO;
   std::optional<Eigen::Isometry3d> pose;  ///< of the root link; unset: the lowest collision point 1 mm above the ground
-  Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();   ///< of the root link origin, world axes [m/s]
+  Eigen::Vector3d linear_velocity = Eigen::Vector3d::Zero();  ///< of the root link origin, world axes [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< world axes [rad/s]
   std::map<std::string, JointInit> joints;
   std::map<std::string, JointCommand> commands;
@@ -47,16 +47,16 @@ struct BodySpec
 
 struct GroundSpec
 {
-  double height = 0.0;           ///< [m]
+  double height = 0.0;  ///< [m]
   std::optional<double> friction;  ///< material `ground`; unset: the table decides
 };
 
 struct Scenario
 {
   std::string name = "scenario";
-  double time_step = 0.001;                            ///< [s] > 0
-  double duration = 2.0;                               ///< [s]
-  Eigen::Vector3d gravity{0.0, 0.0, -9.81};            ///< [m/s^2]
+  double time_step = 0.001;  ///< [s] > 0
+  double duration = 2.0;  ///< [s]
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   std::string solver = "portfolio";
   StoppingOptions stopping;
   MaterialTable materials;

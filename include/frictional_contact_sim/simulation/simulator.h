@@ -22,9 +22,9 @@ namespace frictional_contact_sim
 /** @brief What to do when a step's solve has not converged. */
 enum class FailurePolicy
 {
-  STOP,   ///< the caller ends the run
+  STOP,  ///< the caller ends the run
   PAUSE,  ///< the caller pauses
-  HOLD,   ///< the state stays as it was before the step (velocities set to zero)
+  HOLD,  ///< the state stays as it was before the step (velocities set to zero)
   ACCEPT  ///< take the best iterate and go on
 };
 
@@ -53,15 +53,16 @@ public:
   const std::vector<std::string>& warnings() const;  ///< from loading, one line each
   double loadingSeconds() const;
 
-  int bodyCount() const;                           ///< robots, in the order of the scenario
+  int bodyCount() const;  ///< robots, in the order of the scenario
   const std::string& bodyName(int body) const;
   const MultibodyModel& model(int body) const;
-  const MultibodyData& data(int body) const;       ///< poses and velocities at the end of the step
-  Eigen::VectorXd& position(int body);             ///< nq; call stateChanged() after writing
+  const MultibodyData& data(int body) const;  ///< poses and velocities at the end of the step
+  Eigen::VectorXd& position(int body);  ///< nq; call stateChanged() after writing
   const Eigen::VectorXd& position(int body) const;
   const Eigen::VectorXd& velocity(int body) const;  ///< nv
   Eigen::VectorXd& velocity(int body);
-  const Eigen::VectorXd& effort(int body) const;   ///< nv, applied by commands in the last step (after saturation)
+  /** @brief Effort of a joint's drive over the last step, after saturation [N m] or [N]. */
+  double effort(int body, int joint) const;
   /** @brief After a state was written by hand: impact solve at q (DESIGN.md), warm starts dropped. */
   void stateChanged();
 

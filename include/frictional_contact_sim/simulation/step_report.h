@@ -26,50 +26,50 @@ struct ContactState
   std::uint64_t id = 0;
   int shape_a = 0;
   int shape_b = 0;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< world [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< world, from b to a
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< world, from b to a
   Eigen::Vector3d tangent_1 = Eigen::Vector3d::UnitX();
   Eigen::Vector3d tangent_2 = Eigen::Vector3d::UnitY();
-  double gap = 0.0;                                     ///< at the midpoint of the step [m]
+  double gap = 0.0;  ///< at the midpoint of the step [m]
   double friction = 0.0;
   double restitution = 0.0;
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();    ///< on a, world [N s]; the force is impulse / dt
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of a relative to b, world, end of the step [m/s]
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< on a, world [N s]; the force is impulse / dt
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of a relative to b, world, end of the step [m/s]
   ContactMode mode = ContactMode::OPEN;
-  double residual = 0.0;                                ///< |e_i| of this contact, natural map [m/s]
-  double cone_margin = 0.0;                             ///< mu r_N - |r_T| [N s]
+  double residual = 0.0;  ///< |e_i| of this contact, natural map [m/s]
+  double cone_margin = 0.0;  ///< mu r_N - |r_T| [N s]
 };
 
 struct EnergyLedger
 {
   double kinetic = 0.0;
-  double potential = 0.0;        ///< of gravity
-  double actuators = 0.0;        ///< work done by commands, servos (springs and dampers), external wrenches
-  double friction = 0.0;         ///< dissipated by friction of contacts, >= 0
-  double impact = 0.0;           ///< dissipated by the normal impulses of contacts (may be negative: see recovery)
-  double joints = 0.0;           ///< dissipated by damping, dry friction and limits of joints
-  double balance_error = 0.0;    ///< change of kinetic + potential - actuators + all dissipation
+  double potential = 0.0;  ///< of gravity
+  double actuators = 0.0;  ///< work done by commands, servos (springs and dampers), external wrenches
+  double friction = 0.0;  ///< dissipated by friction of contacts, >= 0
+  double impact = 0.0;  ///< dissipated by the normal impulses of contacts (may be negative: see recovery)
+  double joints = 0.0;  ///< dissipated by damping, dry friction and limits of joints
+  double balance_error = 0.0;  ///< change of kinetic + potential - actuators + all dissipation
 };
 
 struct StepReport
 {
-  std::uint64_t step = 0;      ///< steps since start, never reset
-  double time = 0.0;           ///< at the end of the step [s]
-  double dt = 0.0;             ///< [s]
+  std::uint64_t step = 0;  ///< steps since start, never reset
+  double time = 0.0;  ///< at the end of the step [s]
+  double dt = 0.0;  ///< [s]
   int contacts = 0;
   int velocities = 0;
   int bilaterals = 0;
   int islands = 0;
-  std::string solver;          ///< method whose answer was taken
-  std::string solvers_tried;   ///< comma separated
+  std::string solver;  ///< method whose answer was taken
+  std::string solvers_tried;  ///< comma separated
   SolverStatus status = SolverStatus::NOT_RUN;
   int iterations = 0;
   double residual = 0.0;
-  double solve_time = 0.0;     ///< wall clock [s]
+  double solve_time = 0.0;  ///< wall clock [s]
   double bilateral_violation = 0.0;
   double max_penetration = 0.0;  ///< max(0, -gap) at the midpoint [m]
   EnergyLedger energy;
-  std::string fclib_file;      ///< dump of a failed step, else empty
+  std::string fclib_file;  ///< dump of a failed step, else empty
 };
 
 }  // namespace frictional_contact_sim
