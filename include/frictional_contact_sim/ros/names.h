@@ -1,0 +1,40 @@
+#pragma once
+/**
+ * @file names.h
+ * @brief How joints and links of a scenario are called on ROS topics: by their URDF name while it is unique among all
+ * robots of the scenario, else `robot/name`.
+ */
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/simulation/simulator.h"
+
+namespace frictional_contact_sim
+{
+/** @brief A joint with one coordinate: the joints of joint_states, in its order. */
+struct JointHandle
+{
+  std::string name;  ///< on topics
+  int body = 0;  ///< robot of the scenario
+  int joint = 0;  ///< in the robot's model
+  int q_index = 0;
+  int v_index = 0;
+  bool mimic = false;
+};
+
+struct NameTable
+{
+  std::vector<JointHandle> joints;  ///< robots in order, joints in the order of their models
+  std::vector<int> actuated;  ///< indices into joints: those that take commands (no mimic joints)
+  std::vector<std::string> robots;  ///< by robot
+  std::vector<std::vector<std::string>> frames;  ///< by robot and frame of its model
+  std::vector<std::string> roots;  ///< tf name of each robot's root link
+  std::vector<std::string> unsupported_joints;  ///< planar and floating joints: no place in sensor_msgs/JointState
+};
+
+NameTable makeNameTable(const Simulator& simulator);
+
+/** @return index into table.joints, -1 when unknown; `robot/joint` is always understood. */
+int findJoint(const NameTable& table, const std::string& name);
+
+}  // namespace frictional_contact_sim

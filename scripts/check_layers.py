@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Fails on any #include that DESIGN.md's module table does not allow.
+
+A module may include itself, the modules below it that the table names (and what those may include), the C++ standard
+library and Eigen, and the third-party headers listed here. Headers marked as private appear in .cpp files only.
+"""
+import pathlib
+import re
+import sys
+
+PACKAGE = "frictional_contact_sim"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# module: the project modules it may include directly; permission is transitive, as linking is.
+MODULES = {
+    "math": [],
+    "problem": ["math"],
+    "solver": ["problem", "math"],
+    "model": ["math"],
+    "collision": ["model"],
+    "dynamics": ["model", "collision", "problem"],
+    "simulation": ["dynamics", "solver"],
+    "rolling": ["math", "solver"],
+    "ros": ["simulation"],
+}
+# Third-party headers by first path element (or whole name): the modules whose .cpp files may include them.
+PRIVATE = {
+    "fclib.h": ["problem"], "fclib.hpp": ["problem"], "hdf5.h": ["problem"], "H5Cpp.h": ["problem"],
+    "cholmod.h": ["problem", "solver"], "suitesparse": ["problem", "solver"],
+    "fcl": ["collision"], "assimp": ["collision"], "libqhull_r": ["collision"], "libqhullcpp": ["collision"],
+    "urdf_parser": ["model"], "urdf_model": ["model"], "urdf_world": ["model"], "urdf": ["model"],
+    "tinyxml2.h": ["model"], "tinyxml.h": ["model"], "rospack": ["model"],
+    "yaml-cpp": ["simulation"],
+}
+ROS = {"ros", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs", "rosgraph_msgs",
+       "tf2_msgs", "trajectory_msgs", "diagnostic_msgs", "xmlrpcpp", "XmlRpcValue.h", "XmlRpcClient.h", "XmlRpc.h",
+       "rosbag", "topic_tools", "diagnostic_updater", "tf2_ros", "tf2"}
+TOOL_HEADERS = {"CLI", "nlohmann", "nlohmann_json"}
+POSIX = {"unistd.h", "sys", "fcntl.h", "signal.h", "cxxabi.h"}
+TEST_HEADERS = {"gtest", "gmock", "benchmark", "support"}
+EVERYWHERE = {"Eigen"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*(<|")([^>"]+)[>"]')
+
+
+def closure(module):
+    """The module and everything it may include."""
+    found, todo = set(), [module]
+    while todo:
+        name = todo.pop()
+        if name not in found:
+            found.add(name)
+            todo += MODULES[name]
+    return found
+
+
+def place(path):
+    """(module or kind, is this a public header) of a file; kind is tools, test or benchmark outside the modules."""
+    parts = path.relative_to(ROOT).parts
+    if parts[0] == "include":
+        return parts[2], True
+    if parts[0] == "src":
+        return parts[1], path.suffix == ".h"
+    return parts[0], False
+
+
+def violation(path, quoted, name):
+    """Why this include is not allowed, or None."""
+    module, is_header = place(path)
+    parts = name.split("/")
+    first = parts[0]
+    if first == PACKAGE and len(parts) == 2:  # generated message or service
+        return None if module == "ros" or module not in MODULES else "generated messages belong to ros"
+    if module not in MODULES:  # tools, tests and benchmarks may use every module
+        if module == "tools" and first in ROS:
+            return "ROS headers belong to the module ros"
+        return None
+    if first == PACKAGE:
+        if parts[1] not in MODULES:
+            return f"no module {parts[1]}"
+        return None if parts[1] in closure(module) else f"{module} must not know {parts[1]}"
+    if quoted and len(parts) == 1 and (path.parent / name).is_file():
+        return None
+    if first in EVERYWHERE or (not quoted and len(parts) == 1 and "." not in name):
+        return None
+    if first in ROS:
+        return None if module == "ros" else "ROS headers belong to the module ros"
+    if first in POSIX:
+        return "POSIX headers belong into .cpp files" if is_header else None
+    if first in PRIVATE:
+        if module not in PRIVATE[first]:
+            return f"{first} belongs to {' and '.join(PRIVATE[first])}"
+        return f"{first} belongs into .cpp files" if is_header else None
+    if first in TOOL_HEADERS:
+        return "command-line and JSON headers belong to tools"
+    return "not in the table of scripts/check_layers.py"
+
+
+def main():
+    files = [path for folder in ("include", "src", "test", "benchmark") for suffix in ("*.h", "*.cpp")
+             for path in sorted((ROOT / folder).rglob(suffix))]
+    failures = 0
+    for path in files:
+        module, _ = place(path)
+        top = path.relative_to(ROOT).parts[0]
+        if top in ("include", "src") and module not in MODULES and module != "tools":
+            print(f"{path.relative_to(ROOT)}: module {module} is not in DESIGN.md's table")
+            failures += 1
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            reason = match and violation(path, match.group(1) == '"', match.group(2))
+            if reason:
+                print(f"{path.relative_to(ROOT)}:{number}: {match.group(2)}: {reason}")
+                failures += 1
+    print(f"check_layers: {len(files)} files, {failures} violations")
+    return 1 if failures or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,44 @@
+# Sourced by the scripts of this folder (bash). Says where things are and gives a plain environment, so that neither a
+# python3 of pyenv or conda nor another ROS workspace of the caller gets into the build.
+package_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build_dir=$package_dir/build
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin
+unset PYTHONHOME PYTHONPATH CMAKE_PREFIX_PATH
+
+# Installs the packages listed in the files named; prints on stderr only.
+install_packages()
+{
+  "$package_dir/scripts/install_dependencies" "$@" >&2
+}
+
+# Configures (when needed) and builds: build_package [cmake options ...] [-- make targets ...]; prints on stderr only.
+build_package()
+{
+  local options=() targets=()
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
+  shift || true
+  targets=("$@")
+  local stamp=$build_dir/.configured
+  if [ ! -f "$build_dir/Makefile" ] || [ ! -f "$stamp" ] || [ ${#options[@]} -gt 0 ]; then
+    # A build folder that came along from another path cannot be reused: CMake refuses it.
+    if [ -f "$build_dir/CMakeCache.txt" ] && ! grep -qx "CMAKE_HOME_DIRECTORY:INTERNAL=$package_dir" "$build_dir/CMakeCache.txt"; then
+      rm -rf "$build_dir"
+    fi
+    cmake -S "$package_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release "${options[@]}" >&2 || return
+    touch "$stamp"
+  fi
+  cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2
+}
+
+# The package's own ROS environment; the caller's ROS_PACKAGE_PATH and ROS_MASTER_URI are kept.
+use_devel_space()
+{
+  local caller_path=${ROS_PACKAGE_PATH:-} caller_master=${ROS_MASTER_URI:-}
+  unset ROS_PACKAGE_PATH
+  set +u
+  # shellcheck disable=SC1091
+  source "$build_dir/devel/setup.bash" >&2
+  set -u
+  export ROS_PACKAGE_PATH=$package_dir${caller_path:+:$caller_path}:/usr/share
+  export ROS_MASTER_URI=${caller_master:-http://localhost:11311}
+}

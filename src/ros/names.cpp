@@ -1,0 +1,105 @@
+#include "frictional_contact_sim/ros/names.h"
+
+#include <map>
+
+namespace frictional_contact_sim
+{
+namespace
+{
+std::string qualified(const std::string& robot, const std::string& name)
+{
+  return robot + "/" + name;
+}
+
+/** @brief How often each URDF name occurs, joints or links of all robots. */
+std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
+{
+  std::map<std::string, int> count;
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    const MultibodyModel& model = simulator.model(body);
+    if (joints)
+    {
+      for (const Joint& joint : model.joints)
+      {
+        ++count[joint.name];
+      }
+    }
+    else
+    {
+      for (const Frame& frame : model.frames)
+      {
+        ++count[frame.name];
+      }
+    }
+  }
+  return count;
+}
+
+void addJoints(const Simulator& simulator, int body, const std::map<std::string, int>& count, NameTable& table)
+{
+  const MultibodyModel& model = simulator.model(body);
+  for (std::size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
+  {
+    const Joint& joint = model.joints[i];
+    const std::string name = count.at(joint.name) == 1 ? joint.name : qualified(simulator.bodyName(body), joint.name);
+    if (velocitySize(joint.type) != 1)
+    {
+      table.unsupported_joints.push_back(name);
+      continue;
+    }
+    const bool mimic = joint.mimic.joint >= 0;
+    if (!mimic)
+    {
+      table.actuated.push_back(static_cast<int>(table.joints.size()));
+    }
+    table.joints.push_back({name, body, static_cast<int>(i), joint.q_index, joint.v_index, mimic});
+  }
+}
+
+}  // namespace
+
+NameTable makeNameTable(const Simulator& simulator)
+{
+  NameTable table;
+  const std::map<std::string, int> joint_count = countNames(simulator, true);
+  const std::map<std::string, int> link_count = countNames(simulator, false);
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    const MultibodyModel& model = simulator.model(body);
+    table.robots.push_back(simulator.bodyName(body));
+    addJoints(simulator, body, joint_count, table);
+    std::vector<std::string> frames;
+    for (const Frame& frame : model.frames)
+    {
+      const bool unique = link_count.at(frame.name) == 1;
+      frames.push_back(unique ? frame.name : qualified(simulator.bodyName(body), frame.name));
+    }
+    const int root = model.findFrame(model.bodies.front().name);
+    table.roots.push_back(root >= 0 ? frames[root] : model.bodies.front().name);
+    table.frames.push_back(frames);
+  }
+  return table;
+}
+
+int findJoint(const NameTable& table, const std::string& name)
+{
+  for (std::size_t i = 0; i < table.joints.size(); ++i)
+  {
+    const JointHandle& joint = table.joints[i];
+    if (joint.name == name)
+    {
+      return static_cast<int>(i);
+    }
+    const std::string& robot = table.robots[joint.body];
+    const bool starts_with_robot = name.size() > robot.size() && name.compare(0, robot.size(), robot) == 0;
+    if (starts_with_robot && name[robot.size()] == '/' &&
+        name.compare(robot.size() + 1, std::string::npos, joint.name) == 0)
+    {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+}  // namespace frictional_contact_sim
