@@ -1,0 +1,128 @@
+#include "frictional_contact_sim/simulation/csv_recorder.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "frictional_contact_sim/model/kinematics.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+void write(std::ofstream& file, const Eigen::Vector3d& vector)
+{
+  file << ',' << vector.x() << ',' << vector.y() << ',' << vector.z();
+}
+}  // namespace
+
+Eigen::Isometry3d rootPose(const Simulator& simulator, int body)
+{
+  return simulator.data(body).body_pose.front();
+}
+
+Vector6d rootVelocity(const Simulator& simulator, int body)
+{
+  return pointVelocity(simulator.data(body), 0, rootPose(simulator, body).translation());
+}
+
+std::ofstream CsvRecorder::open(const std::string& name, const char* columns) const
+{
+  const std::string path = folder_ + "/" + name;
+  std::ofstream file(path);
+  if (!file)
+    throw std::runtime_error(path + ": cannot be written, expected a folder with write permission");
+  file.precision(17);
+  file << columns << '\n';
+  return file;
+}
+
+CsvRecorder::CsvRecorder(const std::string& folder) : folder_(folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw std::runtime_error(folder + ": cannot be created: " + error.message());
+  states_ = open("states.csv", "time,body,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz");
+  joints_ = open("joints.csv", "time,body,joint,position,velocity,effort");
+  contacts_ =
+      open("contacts.csv", "time,id,body_a,body_b,link_a,link_b,x,y,z,nx,ny,nz,gap,fx,fy,fz,vx,vy,vz,mode,friction");
+  steps_ = open("steps.csv",
+                "step,time,dt,contacts,velocities,bilaterals,islands,solver,solvers_tried,status,iterations,residual,"
+                "solve_time,bilateral_violation,max_penetration,kinetic,potential,actuators,friction,impact,joints,"
+                "balance_error");
+}
+
+void CsvRecorder::record(const Simulator& simulator, bool with_step)
+{
+  const double time = simulator.time();
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    const Eigen::Isometry3d pose = rootPose(simulator, body);
+    const Eigen::Quaterniond orientation(pose.linear());
+    const Vector6d velocity = rootVelocity(simulator, body);
+    states_ << time << ',' << simulator.bodyName(body);
+    write(states_, pose.translation());
+    states_ << ',' << orientation.x() << ',' << orientation.y() << ',' << orientation.z() << ',' << orientation.w();
+    write(states_, velocity.head<3>());
+    write(states_, velocity.tail<3>());
+    states_ << '\n';
+    const MultibodyModel& model = simulator.model(body);
+    for (size_t j = 0; j < model.joints.size(); ++j)
+    {
+      const Joint& joint = model.joints[j];
+      if (velocitySize(joint.type) == 1)
+        joints_ << time << ',' << simulator.bodyName(body) << ',' << joint.name << ','
+                << simulator.position(body)[joint.q_index] << ',' << simulator.velocity(body)[joint.v_index] << ','
+                << simulator.effort(body, static_cast<int>(j)) << '\n';
+    }
+  }
+  if (!with_step)
+    return;
+  recordContacts(simulator);
+  recordReport(simulator.report());
+}
+
+void CsvRecorder::recordContacts(const Simulator& simulator)
+{
+  const auto bodyName = [&](const ShapeInfo& shape)
+  { return shape.robot >= 0 ? simulator.bodyName(shape.robot) : std::string("ground"); };
+  for (const ContactState& contact : simulator.contacts())
+  {
+    const ShapeInfo& a = simulator.shape(contact.shape_a);
+    const ShapeInfo& b = simulator.shape(contact.shape_b);
+    contacts_ << simulator.time() << ',' << contact.id << ',' << bodyName(a) << ',' << bodyName(b) << ',' << a.link
+              << ',' << b.link;
+    write(contacts_, contact.position);
+    write(contacts_, contact.normal);
+    contacts_ << ',' << contact.gap;
+    write(contacts_, contact.impulse / simulator.report().dt);
+    write(contacts_, contact.velocity);
+    contacts_ << ',' << toString(contact.mode) << ',' << contact.friction << '\n';
+  }
+}
+
+void CsvRecorder::recordReport(const StepReport& report)
+{
+  const EnergyLedger& energy = report.energy;
+  std::string tried = report.solvers_tried;
+  for (char& letter : tried)
+    letter = letter == ',' ? ' ' : letter;
+  steps_ << report.step << ',' << report.time << ',' << report.dt << ',' << report.contacts << ',' << report.velocities
+         << ',' << report.bilaterals << ',' << report.islands << ',' << report.solver << ',' << tried << ','
+         << toString(report.status) << ',' << report.iterations << ',' << report.residual << ',' << report.solve_time
+         << ',' << report.bilateral_violation << ',' << report.max_penetration << ',' << energy.kinetic << ','
+         << energy.potential << ',' << energy.actuators << ',' << energy.friction << ',' << energy.impact << ','
+         << energy.joints << ',' << energy.balance_error << '\n';
+}
+
+void CsvRecorder::close()
+{
+  for (std::ofstream* file : {&states_, &joints_, &contacts_, &steps_})
+  {
+    file->close();
+    if (!*file)
+      throw std::runtime_error(folder_ + ": writing failed, is the disk full?");
+  }
+}
+
+}  // namespace frictional_contact_sim

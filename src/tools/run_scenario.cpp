@@ -1,0 +1,254 @@
+// run_scenario FILE.yaml: runs a scenario in process, as fast as it can, and prints one JSON object.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "frictional_contact_sim/simulation/csv_recorder.h"
+#include "frictional_contact_sim/simulation/scenario_loader.h"
+#include "frictional_contact_sim/simulation/simulator.h"
+#include "frictional_contact_sim/solver/registry.h"
+
+namespace fcs = frictional_contact_sim;
+using nlohmann::json;
+
+namespace
+{
+struct Options
+{
+  std::string file;
+  double duration = -1.0;
+  double time_step = -1.0;
+  std::string solver;
+  std::string output;
+  bool json_output = false;
+  int repeat = 1;
+};
+
+/** What is worst over all steps of a run. */
+struct RunSummary
+{
+  long steps = 0;
+  long failed_steps = 0;
+  double seconds = 0.0;
+  double worst_residual = 0.0;
+  double max_penetration = 0.0;
+  double max_bilateral_violation = 0.0;
+  double loading_seconds = 0.0;
+  std::uint64_t hash = 0;
+};
+
+std::vector<double> list(const Eigen::VectorXd& vector)
+{
+  return {vector.data(), vector.data() + vector.size()};
+}
+
+/** A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
+class Progress
+{
+public:
+  explicit Progress(long total) : total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
+  ~Progress()
+  {
+    if (shown_)
+      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r';
+  }
+  void update(long done, double seconds)
+  {
+    const long percent = total_ > 0 ? 100 * done / total_ : 100;
+    if (!terminal_ || seconds < 2.0 || percent == last_)
+      return;
+    last_ = percent;
+    shown_ = true;
+    const auto filled = static_cast<size_t>(percent * WIDTH / 100);
+    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
+              << std::flush;
+  }
+
+private:
+  static constexpr long WIDTH = 40;
+  long total_;
+  long last_ = -1;
+  bool terminal_;
+  bool shown_ = false;
+};
+
+RunSummary run(fcs::Simulator& simulator, const Options& options)
+{
+  RunSummary summary;
+  summary.loading_seconds = simulator.loadingSeconds();
+  const fcs::Scenario& scenario = simulator.scenario();
+  const long total = std::lround(scenario.duration / scenario.time_step);
+  std::unique_ptr<fcs::CsvRecorder> recorder;
+  if (!options.output.empty())
+    recorder = std::make_unique<fcs::CsvRecorder>(options.output);
+  if (recorder)
+    recorder->record(simulator, false);
+  Progress progress(total);
+  const auto start = std::chrono::steady_clock::now();
+  for (; summary.steps < total; ++summary.steps)
+  {
+    const fcs::StepReport& report = simulator.step();
+    summary.failed_steps += report.status != fcs::SolverStatus::CONVERGED;
+    summary.worst_residual = std::max(summary.worst_residual, report.residual);
+    summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
+    summary.max_bilateral_violation = std::max(summary.max_bilateral_violation, report.bilateral_violation);
+    if (recorder)
+      recorder->record(simulator, true);
+    if (summary.steps % 100 == 0)
+      progress.update(summary.steps, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (recorder)
+    recorder->close();
+  summary.hash = simulator.stateHash();
+  return summary;
+}
+
+json describeBody(const fcs::Simulator& simulator, int body)
+{
+  const Eigen::Isometry3d pose = fcs::rootPose(simulator, body);
+  const Eigen::Quaterniond orientation(pose.linear());
+  const fcs::Vector6d velocity = fcs::rootVelocity(simulator, body);
+  json joints = json::object();
+  const fcs::MultibodyModel& model = simulator.model(body);
+  for (size_t j = 0; j < model.joints.size(); ++j)
+  {
+    const fcs::Joint& joint = model.joints[j];
+    if (fcs::velocitySize(joint.type) == 1)
+      joints[joint.name] = {{"position", simulator.position(body)[joint.q_index]},
+                            {"velocity", simulator.velocity(body)[joint.v_index]},
+                            {"effort", simulator.effort(body, static_cast<int>(j))}};
+  }
+  return {{"position", list(pose.translation())},
+          {"orientation", {orientation.x(), orientation.y(), orientation.z(), orientation.w()}},
+          {"linear_velocity", list(velocity.head<3>())},
+          {"angular_velocity", list(velocity.tail<3>())},
+          {"joints", joints}};
+}
+
+json describe(const fcs::Simulator& simulator, const RunSummary& summary, bool identical)
+{
+  const fcs::EnergyLedger& energy = simulator.report().energy;
+  std::vector<Eigen::Vector3d> forces(simulator.bodyCount(), Eigen::Vector3d::Zero());
+  for (const fcs::ContactState& contact : simulator.contacts())
+  {
+    const Eigen::Vector3d force = contact.impulse / simulator.report().dt;
+    const int a = simulator.shape(contact.shape_a).robot;
+    const int b = simulator.shape(contact.shape_b).robot;
+    if (a >= 0)
+      forces[a] += force;
+    if (b >= 0)
+      forces[b] -= force;
+  }
+  json bodies = json::object();
+  json contact_force = json::object();
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    bodies[simulator.bodyName(body)] = describeBody(simulator, body);
+    contact_force[simulator.bodyName(body)] = list(forces[body]);
+  }
+  return {{"scenario", simulator.scenario().name},
+          {"steps", summary.steps},
+          {"simulated", static_cast<double>(summary.steps) * simulator.scenario().time_step},
+          {"seconds", summary.seconds},
+          {"steps_per_second", summary.seconds > 0.0 ? static_cast<double>(summary.steps) / summary.seconds : 0.0},
+          {"loading_seconds", summary.loading_seconds},
+          {"worst_residual", summary.worst_residual},
+          {"failed_steps", summary.failed_steps},
+          {"max_penetration", summary.max_penetration},
+          {"max_bilateral_violation", summary.max_bilateral_violation},
+          {"energy",
+           {{"kinetic", energy.kinetic},
+            {"potential", energy.potential},
+            {"actuators", energy.actuators},
+            {"friction", energy.friction},
+            {"impact", energy.impact},
+            {"joints", energy.joints},
+            {"balance_error", energy.balance_error}}},
+          {"state_hash", summary.hash},
+          {"repeats_identical", identical},
+          {"bodies", bodies},
+          {"contact_force", contact_force}};
+}
+
+fcs::Scenario load(const Options& options)
+{
+  fcs::Scenario scenario = fcs::loadScenarioFile(options.file);
+  if (options.duration >= 0.0)
+    scenario.duration = options.duration;
+  if (options.time_step > 0.0)
+    scenario.time_step = options.time_step;
+  if (!options.solver.empty())
+    scenario.solver = options.solver;
+  return scenario;
+}
+
+int runAll(const Options& options)
+{
+  const fcs::Scenario scenario = load(options);
+  std::unique_ptr<fcs::Simulator> simulator;
+  std::vector<RunSummary> runs;
+  for (int i = 0; i < options.repeat; ++i)
+  {
+    simulator = std::make_unique<fcs::Simulator>(scenario);
+    if (i == 0)
+      for (const std::string& warning : simulator->warnings())
+        std::cerr << "warning: " << warning << '\n';
+    runs.push_back(run(*simulator, options));
+  }
+  const bool identical = std::all_of(runs.begin(), runs.end(),
+                                     [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
+  std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
+  const RunSummary& median = runs[runs.size() / 2];
+  std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
+  return median.failed_steps == 0 ? 0 : 1;
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  Options options;
+  CLI::App app(
+      "Runs a scenario as fast as it can and prints one JSON object. Exit 0: every step converged, 1: one did "
+      "not, 2: bad input.",
+      "run_scenario");
+  app.add_option("FILE", options.file, "scenario (YAML)")->required();
+  app.add_option("--duration", options.duration, "simulated time instead of the file's [s]")
+      ->check(CLI::Range(0.0, 1e9));
+  app.add_option("--time-step", options.time_step, "instead of the file's [s]")->check(CLI::Range(1e-9, 1e3));
+  app.add_option("--solver", options.solver, "registry name instead of the file's");
+  app.add_option("--output", options.output, "folder for states.csv, joints.csv, contacts.csv, steps.csv");
+  app.add_flag("--json", options.json_output, "the JSON object on one line");
+  app.add_option("--repeat", options.repeat,
+                 "runs; the median time is printed, and whether all runs gave the same bits")
+      ->check(CLI::Range(1, 100000));
+  try
+  {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::CallForHelp& help)
+  {
+    return app.exit(help);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    std::cerr << "run_scenario: " << error.what() << '\n';
+    return 2;
+  }
+  try
+  {
+    return runAll(options);
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "run_scenario: " << error.what() << '\n';
+    return 2;
+  }
+}
