@@ -101,7 +101,7 @@ void CsvRecorder::recordContacts(const Simulator& simulator)
   }
 }
 
-void CsvRecorder::recordReport(const StepReport& report)
+void CsvRecorder::recordReport(const StepSummary& report)
 {
   const EnergyLedger& energy = report.energy;
   std::string tried = report.solvers_tried;

@@ -153,7 +153,7 @@ void Simulator::stateChanged()
   impl_->applyState();
 }
 
-const StepReport& Simulator::report() const
+const StepSummary& Simulator::report() const
 {
   return impl_->report;
 }

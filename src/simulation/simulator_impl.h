@@ -56,7 +56,7 @@ struct Simulator::Impl
   Solution guess;
   SolverResult result;
   bool step_failed = false;
-  StepReport report;
+  StepSummary report;
   double energy_start = 0.0;
   std::vector<ContactState> contacts;
   std::vector<std::pair<std::uint64_t, int>> contact_index;  ///< id to position in contacts, sorted

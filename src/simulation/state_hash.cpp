@@ -55,7 +55,7 @@ std::uint64_t Simulator::stateHash() const
     hash.add(contact.gap);
     hash.add(contact.residual);
   }
-  const StepReport& report = impl_->report;
+  const StepSummary& report = impl_->report;
   hash.add(report.step);
   hash.add(static_cast<std::uint64_t>(report.iterations));
   hash.add(static_cast<std::uint64_t>(report.status));

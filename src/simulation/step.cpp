@@ -16,7 +16,7 @@ constexpr double BOUNDED_FRACTION = 0.9;  ///< of its effort limit: from here on
 constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort limit that is round-off
 }  // namespace
 
-const StepReport& Simulator::step()
+const StepSummary& Simulator::step()
 {
   Impl& sim = *impl_;
   sim.moveToMidpoint();

@@ -94,7 +94,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
   const auto start = std::chrono::steady_clock::now();
   for (; summary.steps < total; ++summary.steps)
   {
-    const fcs::StepReport& report = simulator.step();
+    const fcs::StepSummary& report = simulator.step();
     summary.failed_steps += report.status != fcs::SolverStatus::CONVERGED;
     summary.worst_residual = std::max(summary.worst_residual, report.residual);
     summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);

@@ -25,7 +25,7 @@ public:
 
 private:
   void recordContacts(const Simulator& simulator);
-  void recordReport(const StepReport& report);
+  void recordReport(const StepSummary& report);
   std::ofstream open(const std::string& name, const char* columns) const;
 
   std::string folder_;

@@ -39,13 +39,13 @@ public:
   ~Simulator();
 
   /** @brief One time step (DESIGN.md, "The time step"). No allocation after warm-up while contacts persist. */
-  const StepReport& step();
+  const StepSummary& step();
   /** @brief Initial state again; time and step count go on; the energy ledger starts anew. */
   void reset();
   /** @brief Time back to zero. */
   void resetTime();
 
-  const StepReport& report() const;
+  const StepSummary& report() const;
   const std::vector<ContactState>& contacts() const;  ///< of the last step, ordered by shapes and feature
   const ShapeInfo& shape(int handle) const;
   double time() const;

@@ -51,7 +51,8 @@ struct EnergyLedger
   double balance_error = 0.0;  ///< change of kinetic + potential - actuators + all dissipation
 };
 
-struct StepReport
+/** @brief Not called StepReport: the generated message of that name lives in the same namespace. */
+struct StepSummary
 {
   std::uint64_t step = 0;  ///< steps since start, never reset
   double time = 0.0;  ///< at the end of the step [s]
