@@ -5,8 +5,37 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+/** Visits a coordinate and its ancestors run by run: within a run the next index needs no look-up. */
+class AncestorRuns
+{
+public:
+  explicit AncestorRuns(const MultibodyModel& model) : parent_(model.dof_parent.data()), run_(model.dof_run.data()) {}
+
+  template <typename Visitor>
+  void forEach(int coordinate, const Visitor& visit) const
+  {
+    for (int end = coordinate; end >= 0;)
+    {
+      const int begin = run_[end];
+      for (int i = end; i >= begin; --i)
+      {
+        visit(i);
+      }
+      end = parent_[begin];
+    }
+  }
+
+private:
+  const int* parent_;
+  const int* run_;
+};
+}  // namespace
+
 void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
 {
+  const AncestorRuns chain(model);
   const int bodies = static_cast<int>(model.bodies.size());
   for (int i = 0; i < bodies; ++i)
   {
@@ -19,12 +48,13 @@ void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
     for (int j = joint.v_index + velocitySize(joint.type) - 1; j >= joint.v_index; --j)
     {
       const Vector6d momentum = multiply(inertia, data.motion_subspace.col(j));
-      for (int k = j; k >= 0; k = model.dof_parent[k])
-      {
-        const double entry = data.motion_subspace.col(k).dot(momentum);
-        data.mass_matrix(k, j) = entry;
-        data.mass_matrix(j, k) = entry;
-      }
+      chain.forEach(j,
+                    [&](int k)
+                    {
+                      const double entry = data.motion_subspace.col(k).dot(momentum);
+                      data.mass_matrix(k, j) = entry;
+                      data.mass_matrix(j, k) = entry;
+                    });
     }
     if (joint.parent >= 0)
     {
@@ -38,64 +68,60 @@ void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
 
 bool factorizeMassMatrix(const MultibodyModel& model, const VectorIn& extra, MultibodyData& data)
 {
-  const int* parent = model.dof_parent.data();
-  Eigen::MatrixXd& factor = data.mass_factor;
+  const AncestorRuns chain(model);
+  const Eigen::Index stride = model.nv;
+  double* const factor = data.mass_factor.data();
+  double* const row = data.factor_row.data();
   for (int k = 0; k < model.nv; ++k)
   {
-    for (int i = k; i >= 0; i = parent[i])
-    {
-      factor(k, i) = data.mass_matrix(k, i);
-    }
-    factor(k, k) += extra.size() > 0 ? extra[k] : 0.0;
+    chain.forEach(k, [&](int i) { factor[k + i * stride] = data.mass_matrix(i, k); });
+    factor[k + k * stride] += extra.size() > 0 ? extra[k] : 0.0;
   }
   // From the leaves to the root: row k is finished first and only its ancestors are updated (no fill-in).
   for (int k = model.nv - 1; k >= 0; --k)
   {
-    const double pivot = factor(k, k);
+    const double pivot = factor[k + k * stride];
     if (!(pivot > 0.0))
     {
       return false;
     }
     const double root = std::sqrt(pivot);
     const double inverse = 1.0 / root;
-    factor(k, k) = root;
-    for (int i = parent[k]; i >= 0; i = parent[i])
-    {
-      factor(k, i) *= inverse;
-    }
-    for (int i = parent[k]; i >= 0; i = parent[i])
-    {
-      const double entry = factor(k, i);
-      for (int j = i; j >= 0; j = parent[j])
-      {
-        factor(i, j) -= entry * factor(k, j);
-      }
-    }
+    factor[k + k * stride] = root;
+    data.factor_inverse[k] = inverse;
+    const int parent = model.dof_parent[k];
+    chain.forEach(parent,
+                  [&](int i)
+                  {
+                    row[i] = factor[k + i * stride] * inverse;
+                    factor[k + i * stride] = row[i];
+                  });
+    chain.forEach(parent,
+                  [&](int i)
+                  {
+                    const double entry = row[i];
+                    chain.forEach(i, [&](int j) { factor[i + j * stride] -= entry * row[j]; });
+                  });
   }
   return true;
 }
 
 void solveMassMatrix(const MultibodyModel& model, const MultibodyData& data, VectorOut x)
 {
-  const int* parent = model.dof_parent.data();
-  const Eigen::MatrixXd& factor = data.mass_factor;
+  const AncestorRuns chain(model);
+  const Eigen::Index stride = model.nv;
+  const double* const factor = data.mass_factor.data();
   for (int i = model.nv - 1; i >= 0; --i)
   {
-    const double value = x[i] / factor(i, i);
+    const double value = x[i] * data.factor_inverse[i];
     x[i] = value;
-    for (int j = parent[i]; j >= 0; j = parent[j])
-    {
-      x[j] -= factor(i, j) * value;
-    }
+    chain.forEach(model.dof_parent[i], [&](int j) { x[j] -= factor[i + j * stride] * value; });
   }
   for (int i = 0; i < model.nv; ++i)
   {
     double value = x[i];
-    for (int j = parent[i]; j >= 0; j = parent[j])
-    {
-      value -= factor(i, j) * x[j];
-    }
-    x[i] = value / factor(i, i);
+    chain.forEach(model.dof_parent[i], [&](int j) { value -= factor[i + j * stride] * x[j]; });
+    x[i] = value * data.factor_inverse[i];
   }
 }
 

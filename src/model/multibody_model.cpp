@@ -107,6 +107,7 @@ void finalize(MultibodyModel& model)
   model.nq = 0;
   model.nv = 0;
   model.dof_parent.clear();
+  model.dof_run.clear();
   model.dof_body.clear();
   model.body_dof.assign(model.bodies.size(), -1);
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i)
@@ -119,6 +120,7 @@ void finalize(MultibodyModel& model)
     for (int k = 0; k < velocitySize(joint.type); ++k)
     {
       model.dof_parent.push_back(previous);
+      model.dof_run.push_back(previous >= 0 && previous == model.nv - 1 ? model.dof_run[previous] : model.nv);
       model.dof_body.push_back(i);
       previous = model.nv++;
     }

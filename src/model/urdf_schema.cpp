@@ -285,6 +285,11 @@ void applyToElement(XMLElement& element, const std::string& source, OmissionTall
 
 void OmissionTally::add(const std::string& what, const std::string& where)
 {
+  addNote(what + " is not used", where);
+}
+
+void OmissionTally::addNote(const std::string& what, const std::string& where)
+{
   for (Entry& entry : entries_)
   {
     if (entry.what == what)
@@ -302,7 +307,7 @@ std::vector<std::string> OmissionTally::lines() const
   for (const Entry& entry : entries_)
   {
     const std::string count = entry.count == 1 ? "" : std::to_string(entry.count) + " times, first ";
-    lines.push_back(entry.what + " is not used (" + count + "at " + entry.first + ")");
+    lines.push_back(entry.what + " (" + count + "at " + entry.first + ")");
   }
   return lines;
 }

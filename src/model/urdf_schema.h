@@ -20,7 +20,10 @@ namespace frictional_contact_sim
 class OmissionTally
 {
 public:
+  /** @brief "<what> is not used". */
   void add(const std::string& what, const std::string& where);
+  /** @brief Something else worth a warning. */
+  void addNote(const std::string& what, const std::string& where);
   /** @brief One line per kind, in order of appearance. */
   std::vector<std::string> lines() const;
 

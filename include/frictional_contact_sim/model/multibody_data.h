@@ -22,9 +22,9 @@ using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /** @brief Mass, first and second moment about `reference`, world axes; sums over bodies. */
 struct WorldInertia
 {
-  double mass = 0.0;                                            ///< [kg]
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();             ///< mass times (centre - reference) [kg m]
-  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();         ///< about reference [kg m^2]
+  double mass = 0.0;  ///< [kg]
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< mass times (centre - reference) [kg m]
+  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();  ///< about reference [kg m^2]
 };
 
 struct MultibodyData
@@ -34,15 +34,17 @@ struct MultibodyData
   // written by forwardKinematics
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
   std::vector<Eigen::Isometry3d> body_pose;  ///< bodies: body frame in the world
-  Matrix6Xd motion_subspace;                 ///< 6 x nv: column j is the motion of unit v_j
-  std::vector<WorldInertia> body_inertia;    ///< bodies
+  Matrix6Xd motion_subspace;  ///< 6 x nv: column j is the motion of unit v_j
+  std::vector<WorldInertia> body_inertia;  ///< bodies
   // written by forwardVelocities
-  std::vector<Vector6d> body_velocity;       ///< bodies
+  std::vector<Vector6d> body_velocity;  ///< bodies
   // written by computeMassMatrix
-  Eigen::MatrixXd mass_matrix;               ///< nv x nv, both triangles
+  Eigen::MatrixXd mass_matrix;  ///< nv x nv, both triangles
   // written by factorizeMassMatrix
-  Eigen::MatrixXd mass_factor;               ///< nv x nv, lower triangle of L with M = L^T L (tree sparsity)
+  Eigen::MatrixXd mass_factor;  ///< nv x nv, lower triangle of L with M = L^T L (tree sparsity)
+  Eigen::VectorXd factor_inverse;  ///< nv: 1 / diagonal of L
   // scratch
+  Eigen::VectorXd factor_row;  ///< nv
   std::vector<WorldInertia> composite_inertia;
   std::vector<Vector6d> body_acceleration;
   std::vector<Vector6d> body_force;

@@ -122,6 +122,7 @@ struct MultibodyModel
   int nq = 0;
   int nv = 0;
   std::vector<int> dof_parent;  ///< nv: the velocity coordinate before this one on the way to the root, -1 at the root
+  std::vector<int> dof_run;  ///< nv: first coordinate of the unbroken run (dof_parent[i] = i - 1) that ends here
   std::vector<int> dof_body;  ///< nv: body moved by the coordinate
   std::vector<int> body_dof;  ///< bodies: last velocity coordinate on the way from the root to the body, -1 = none
 
@@ -132,8 +133,8 @@ struct MultibodyModel
 };
 
 /**
- * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_body, body_dof from the joints. Call after editing joints by
- * hand.
+ * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_run, dof_body, body_dof from the joints. Call after editing
+ * joints by hand.
  * @throws std::invalid_argument when joints and bodies differ in number, a parent does not come first, or an axis is
  * not a unit vector
  */
