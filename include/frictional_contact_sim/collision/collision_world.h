@@ -3,8 +3,8 @@
  * @file collision_world.h
  * @brief Contact points between the shapes of several robots and the ground.
  *
- * FCL gives the broad phase and, for convex pairs, the first witness; contact points, gaps and normals are recomputed
- * in closed form from the supporting features (face, edge, vertex, primitive) to round-off. At most 8 points a pair.
+ * FCL gives the broad phase when there are many shapes; contact points, gaps and normals are computed in closed form
+ * from the supporting features (face, edge, vertex, primitive) to round-off (narrow_phase.h). At most 8 points a pair.
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,25 +19,30 @@
 
 namespace frictional_contact_sim
 {
-/** @brief One contact point between shape_a and shape_b; the normal points from b to a. */
+/**
+ * @brief One contact point between shape_a and shape_b; the normal points from b to a.
+ *
+ * A static shape is always b; of two shapes of robots, a has the lower handle. The id is the four 16-bit numbers
+ * shape_a, shape_b, feature of a, feature of b side by side, so no two points share one.
+ */
 struct ContactPoint
 {
-  std::uint64_t id = 0;                                 ///< same pair of features: same id, as long as it persists
-  int shape_a = 0;                                      ///< handle from addRobot / addStatic
+  std::uint64_t id = 0;  ///< same pair of features: same id, as long as it persists
+  int shape_a = 0;  ///< 0, 1, ... in the order of addRobot / addStatic
   int shape_b = 0;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< world, midway between the two surface points [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< world, unit, from b to a
-  double gap = 0.0;                                     ///< along the normal, negative = penetration [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world, midway between the two surface points [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< world, unit, from b to a
+  double gap = 0.0;  ///< along the normal, negative = penetration [m]
 };
 
 /** @brief What a shape handle stands for. */
 struct ShapeInfo
 {
-  int robot = -1;     ///< index from addRobot; -1 for static shapes
-  int body = -1;      ///< body in the robot's model; -1 for static shapes
-  int frame = -1;     ///< URDF link in the robot's model
-  std::string link;   ///< URDF link name ("ground" for the plane)
-  std::string name;   ///< collision name
+  int robot = -1;  ///< index from addRobot; -1 for static shapes
+  int body = -1;  ///< body in the robot's model; -1 for static shapes
+  int frame = -1;  ///< URDF link in the robot's model
+  std::string link;  ///< URDF link name ("ground" for the plane)
+  std::string name;  ///< collision name
 };
 
 class CollisionWorld
@@ -62,13 +67,16 @@ public:
   void disablePair(int robot, const std::string& link_1, const std::string& link_2);
 
   /**
-   * @brief Disables the pairs of links *within one robot* that overlap now (initial pose). Needs setPoses.
+   * @brief Disables the pairs of links *within one robot* that overlap now (initial pose; gap < -1e-9 m, so links that
+   * only touch still collide). Needs setPoses.
    * @return "link_1 - link_2" of each pair disabled
    */
   std::vector<std::string> disableOverlaps();
 
   /** @brief Body poses of a robot, from its data. */
   void setPoses(int robot, const MultibodyData& data);
+  /** @brief The same for one body. */
+  void setBodyPose(int robot, int body, const Eigen::Isometry3d& pose);
 
   /**
    * @brief Contact points with gap <= margin, ordered by (shape_a, shape_b, feature): deterministic. No allocation

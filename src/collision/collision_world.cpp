@@ -1,0 +1,301 @@
+#include "frictional_contact_sim/collision/collision_world.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "broad_phase.h"
+#include "frictional_contact_sim/collision/narrow_phase.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr int MAX_SHAPES = 1 << 16;  // 16 bits each in an id
+constexpr double OVERLAP_GAP = -1e-9;  // [m] less is an overlap of the initial pose, not a touch
+
+struct Instance
+{
+  ConvexShape shape;
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the body, or in the world for static shapes
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< world
+  bool is_immobile = false;  ///< static, or on a fixed base
+};
+
+struct Robot
+{
+  std::vector<int> parent;  ///< of every body
+  std::vector<int> shapes;  ///< handles
+  std::vector<std::string> frame_names;
+  std::set<std::array<int, 2>> disabled;  ///< frames, the lower first
+};
+
+std::uint64_t makeId(int a, int b, const PairContact& point)
+{
+  return (static_cast<std::uint64_t>(a) << 48) | (static_cast<std::uint64_t>(b) << 32) |
+         (static_cast<std::uint64_t>(point.feature_a) << 16) | point.feature_b;
+}
+}  // namespace
+
+struct CollisionWorld::Impl
+{
+  std::vector<Instance> instances;
+  std::vector<ShapeInfo> infos;
+  std::vector<Bounds> bounds;
+  std::vector<Robot> robots;
+  BroadPhase broad_phase;
+  bool are_pairs_current = false;
+  std::unique_ptr<Manifold> manifold = std::make_unique<Manifold>();
+  std::vector<ContactPoint> contacts;
+
+  int addInstance(Instance instance, ShapeInfo info)
+  {
+    if (instances.size() >= MAX_SHAPES)
+    {
+      throw std::invalid_argument("collision: more than " + std::to_string(MAX_SHAPES) + " shapes");
+    }
+    instances.push_back(std::move(instance));
+    infos.push_back(std::move(info));
+    bounds.emplace_back();
+    are_pairs_current = false;
+    return static_cast<int>(instances.size()) - 1;
+  }
+
+  void setPose(int handle, const Eigen::Isometry3d& pose)
+  {
+    Instance& instance = instances[handle];
+    instance.pose = pose;
+    Bounds& box = bounds[handle];
+    box.radius = instance.shape.bounding_radius;
+    box.normal = pose.linear().col(2);
+    box.center = pose * instance.shape.center;
+    box.half_extent = instance.shape.half_extent;
+    if (instance.shape.kind != ShapeKind::HALF_SPACE)
+    {
+      box.half_extent = pose.linear().cwiseAbs() * instance.shape.half_extent;
+    }
+  }
+
+  bool mayCollide(int i, int k) const
+  {
+    if (instances[i].is_immobile && instances[k].is_immobile)
+    {
+      return false;
+    }
+    const ShapeInfo& first = infos[i];
+    const ShapeInfo& second = infos[k];
+    if (first.robot < 0 || first.robot != second.robot)
+    {
+      return true;
+    }
+    const Robot& robot = robots[first.robot];
+    const bool is_adjacent =
+        first.body == second.body || robot.parent[first.body] == second.body || robot.parent[second.body] == first.body;
+    return !is_adjacent &&
+           robot.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
+  }
+
+  void updatePairs()
+  {
+    if (are_pairs_current)
+    {
+      return;
+    }
+    std::vector<ShapePair> pairs;
+    const int n = static_cast<int>(instances.size());
+    for (int i = 0; i < n; ++i)
+    {
+      for (int k = i + 1; k < n; ++k)
+      {
+        if (mayCollide(i, k))
+        {
+          pairs.push_back(infos[i].robot < 0 ? ShapePair{k, i} : ShapePair{i, k});
+        }
+      }
+    }
+    std::sort(pairs.begin(), pairs.end(),
+              [](const ShapePair& p, const ShapePair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+    broad_phase.reset(std::move(pairs), bounds);
+    are_pairs_current = true;
+  }
+
+  /// Fills the manifold of a pair, in the frame of b.
+  void collidePair(const ShapePair& pair, double margin)
+  {
+    const Instance& a = instances[pair.a];
+    const Instance& b = instances[pair.b];
+    const Eigen::Isometry3d a_in_b = b.pose.inverse(Eigen::Isometry) * a.pose;
+    collide(a.shape, b.shape, a_in_b, margin, *manifold);
+  }
+
+  const Robot& robot(int index) const
+  {
+    if (index < 0 || index >= static_cast<int>(robots.size()))
+    {
+      throw std::invalid_argument("collision: no robot " + std::to_string(index) + ", there are " +
+                                  std::to_string(robots.size()));
+    }
+    return robots[index];
+  }
+};
+
+CollisionWorld::CollisionWorld() : impl_(std::make_unique<Impl>())
+{
+}
+CollisionWorld::~CollisionWorld() = default;
+CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
+CollisionWorld& CollisionWorld::operator=(CollisionWorld&&) noexcept = default;
+
+int CollisionWorld::addRobot(const MultibodyModel& model)
+{
+  const int index = static_cast<int>(impl_->robots.size());
+  Robot robot;
+  for (const Joint& joint : model.joints)
+  {
+    robot.parent.push_back(joint.parent);
+  }
+  for (const Frame& frame : model.frames)
+  {
+    robot.frame_names.push_back(frame.name);
+  }
+  // all meshes first: when one cannot be read the world stays as it was
+  std::vector<Instance> instances;
+  for (const CollisionShape& shape : model.shapes)
+  {
+    Instance instance;
+    instance.shape = makeShape(shape.geometry);
+    instance.placement = shape.placement;
+    const Joint& joint = model.joints[shape.body];
+    instance.is_immobile = joint.type == JointType::FIXED && joint.parent < 0;
+    instances.push_back(std::move(instance));
+  }
+  for (std::size_t k = 0; k < instances.size(); ++k)
+  {
+    const CollisionShape& shape = model.shapes[k];
+    const Eigen::Isometry3d pose = shape.placement;
+    const int handle = impl_->addInstance(
+        std::move(instances[k]), {index, shape.body, shape.frame, robot.frame_names.at(shape.frame), shape.name});
+    robot.shapes.push_back(handle);
+    impl_->setPose(handle, pose);
+  }
+  impl_->robots.push_back(std::move(robot));
+  return index;
+}
+
+int CollisionWorld::addStatic(const Geometry& geometry, const Eigen::Isometry3d& pose, const std::string& name)
+{
+  Instance instance;
+  instance.shape = makeShape(geometry);
+  instance.placement = pose;
+  instance.is_immobile = true;
+  const int handle = impl_->addInstance(std::move(instance), {-1, -1, -1, name, name});
+  impl_->setPose(handle, pose);
+  return handle;
+}
+
+void CollisionWorld::disablePair(int robot, const std::string& link_1, const std::string& link_2)
+{
+  const std::vector<std::string>& names = impl_->robot(robot).frame_names;
+  std::array<int, 2> frames;
+  for (int k = 0; k < 2; ++k)
+  {
+    const std::string& link = k == 0 ? link_1 : link_2;
+    const auto found = std::find(names.begin(), names.end(), link);
+    if (found == names.end())
+    {
+      throw std::invalid_argument("disable_collisions: the robot has no link '" + link + "'");
+    }
+    frames[k] = static_cast<int>(found - names.begin());
+  }
+  std::sort(frames.begin(), frames.end());
+  impl_->robots[robot].disabled.insert(frames);
+  impl_->are_pairs_current = false;
+}
+
+std::vector<std::string> CollisionWorld::disableOverlaps()
+{
+  std::vector<std::string> disabled;
+  impl_->updatePairs();
+  const std::vector<ShapePair> candidates = impl_->broad_phase.candidates(impl_->bounds, 0.0);
+  for (const ShapePair& pair : candidates)
+  {
+    const ShapeInfo& a = impl_->infos[pair.a];
+    const ShapeInfo& b = impl_->infos[pair.b];
+    if (a.robot < 0 || a.robot != b.robot || !impl_->mayCollide(pair.a, pair.b))
+    {
+      continue;
+    }
+    impl_->collidePair(pair, 0.0);
+    const Manifold& manifold = *impl_->manifold;
+    if (std::any_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
+                    [](const PairContact& point) { return point.gap < OVERLAP_GAP; }))
+    {
+      disablePair(a.robot, a.link, b.link);
+      disabled.push_back(a.link + " - " + b.link);
+    }
+  }
+  return disabled;
+}
+
+void CollisionWorld::setPoses(int robot, const MultibodyData& data)
+{
+  for (int handle : impl_->robot(robot).shapes)
+  {
+    impl_->setPose(handle, data.body_pose[impl_->infos[handle].body] * impl_->instances[handle].placement);
+  }
+}
+
+void CollisionWorld::setBodyPose(int robot, int body, const Eigen::Isometry3d& pose)
+{
+  for (int handle : impl_->robot(robot).shapes)
+  {
+    if (impl_->infos[handle].body == body)
+    {
+      impl_->setPose(handle, pose * impl_->instances[handle].placement);
+    }
+  }
+}
+
+const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
+{
+  impl_->updatePairs();
+  impl_->contacts.clear();
+  for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, margin))
+  {
+    impl_->collidePair(pair, margin);
+    const Eigen::Isometry3d& pose = impl_->instances[pair.b].pose;
+    for (int i = 0; i < impl_->manifold->count; ++i)
+    {
+      const PairContact& point = impl_->manifold->points[i];
+      impl_->contacts.push_back({makeId(pair.a, pair.b, point), pair.a, pair.b, pose * point.position,
+                                 pose.linear() * point.normal, point.gap});
+    }
+  }
+  return impl_->contacts;
+}
+
+double CollisionWorld::lowestPoint(int robot) const
+{
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int handle : impl_->robot(robot).shapes)
+  {
+    const Instance& instance = impl_->instances[handle];
+    const Eigen::Vector3d up = instance.pose.linear().row(2).transpose();
+    lowest = std::min(lowest, instance.pose.translation().z() + lowestAlong(instance.shape, up));
+  }
+  return lowest;
+}
+
+int CollisionWorld::shapeCount() const
+{
+  return static_cast<int>(impl_->instances.size());
+}
+
+const ShapeInfo& CollisionWorld::shape(int handle) const
+{
+  return impl_->infos.at(handle);
+}
+
+}  // namespace frictional_contact_sim
