@@ -17,9 +17,9 @@ namespace frictional_contact_sim
 {
 struct DelassusProblem
 {
-  DelassusOperator W;         ///< rows x rows; dense when small, block-sparse otherwise
-  Eigen::VectorXd q;          ///< rows, free relative velocity [m/s]
-  std::vector<Law> laws;      ///< in the order of the rows
+  DelassusOperator W;  ///< rows x rows; dense when small, block-sparse otherwise
+  Eigen::VectorXd q;  ///< rows, free relative velocity [m/s]
+  std::vector<Law> laws;  ///< in the order of the rows
 };
 
 /** @throws std::invalid_argument naming the field, what was found and what was expected. */

@@ -21,34 +21,25 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 struct IncrementalProblem
 {
-  SparseRows M;            ///< nv x nv, symmetric positive definite, both triangles stored [generalized kg]
-  Eigen::VectorXd f;       ///< nv, -M v_k + dt (bias - applied) [N s]
-  SparseRows H;            ///< rowCount(laws) x nv, contact rows (normal, tangent 1, tangent 2) [-]
-  Eigen::VectorXd w;       ///< rowCount(laws), velocity of external objects plus the law's shift [m/s]
-  std::vector<Law> laws;   ///< one law a contact or one-dimensional row, in the order of the rows of H
-  SparseRows G;            ///< nb x nv, bilateral rows (may have zero rows)
-  Eigen::VectorXd b;       ///< nb [m/s]
+  SparseRows M;  ///< nv x nv, symmetric positive definite, both triangles stored [generalized kg]
+  Eigen::VectorXd f;  ///< nv, -M v_k + dt (bias - applied) [N s]
+  SparseRows H;  ///< rowCount(laws) x nv, contact rows (normal, tangent 1, tangent 2) [-]
+  Eigen::VectorXd w;  ///< rowCount(laws), velocity of external objects plus the law's shift [m/s]
+  std::vector<Law> laws;  ///< one law a contact or one-dimensional row, in the order of the rows of H
+  SparseRows G;  ///< nb x nv, bilateral rows (may have zero rows)
+  Eigen::VectorXd b;  ///< nb [m/s]
 
-  int velocities() const
-  {
-    return static_cast<int>(f.size());
-  }
-  int rows() const
-  {
-    return static_cast<int>(w.size());
-  }
-  int bilaterals() const
-  {
-    return static_cast<int>(b.size());
-  }
+  int velocities() const { return static_cast<int>(f.size()); }
+  int rows() const { return static_cast<int>(w.size()); }
+  int bilaterals() const { return static_cast<int>(b.size()); }
 };
 
 /** @brief Unknowns of an incremental problem. A local problem leaves v and lambda empty. */
 struct Solution
 {
-  Eigen::VectorXd v;       ///< nv, generalized velocities at the end of the step
-  Eigen::VectorXd u;       ///< rows, relative velocities [m/s]
-  Eigen::VectorXd r;       ///< rows, impulses [N s]
+  Eigen::VectorXd v;  ///< nv, generalized velocities at the end of the step
+  Eigen::VectorXd u;  ///< rows, relative velocities [m/s]
+  Eigen::VectorXd r;  ///< rows, impulses [N s]
   Eigen::VectorXd lambda;  ///< nb, bilateral impulses [N s]
 };
 

@@ -6,8 +6,9 @@
  *   COULOMB_3D    3 rows (normal, tangent 1, tangent 2)   r in K_mu = { |r_T| <= mu r_N }, (u, r) in C(e, mu) (1.22)
  *   COULOMB_2D    2 rows (normal, tangent)                the same in the plane
  *   UNILATERAL    1 row                                   0 <= u  orthogonal  r >= 0       (joint limit)
- *   DRY_FRICTION  1 row                                   |r| <= c, u = 0 or r = -c u/|u|  (joint friction, bounded servo)
- *   BILATERAL     1 row                                   u = 0, r free                    (rows of G in a local problem)
+ *   DRY_FRICTION  1 row                                   |r| <= c, u = 0 or r = -c u/|u|  (joint friction, bounded
+ * servo) BILATERAL     1 row                                   u = 0, r free                    (rows of G in a local
+ * problem)
  *
  * Source: Cadoux (2009), equation (1.22) for Coulomb; Tresca's one-dimensional law for DRY_FRICTION.
  * @see problem/law_functions.h for the projections and Jacobians.
@@ -31,14 +32,8 @@ struct Law
   double coefficient = 0.0;  ///< Coulomb: friction coefficient mu [-]; DRY_FRICTION: impulse threshold c [N s]; else 0
 
   /** @brief Number of rows: 3, 2 or 1. */
-  int dimension() const
-  {
-    return type == LawType::COULOMB_3D ? 3 : type == LawType::COULOMB_2D ? 2 : 1;
-  }
-  bool isCoulomb() const
-  {
-    return type == LawType::COULOMB_3D || type == LawType::COULOMB_2D;
-  }
+  int dimension() const { return type == LawType::COULOMB_3D ? 3 : type == LawType::COULOMB_2D ? 2 : 1; }
+  bool isCoulomb() const { return type == LawType::COULOMB_3D || type == LawType::COULOMB_2D; }
 };
 
 /** @brief Total number of rows of a list of laws. */

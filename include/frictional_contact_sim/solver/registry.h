@@ -13,10 +13,10 @@ namespace frictional_contact_sim
 {
 struct SolverEntry
 {
-  const char* name;                                  ///< key for parameters, YAML and --solver
-  std::unique_ptr<Solver> (*create)();               ///< with default options
-  const char* summary;                               ///< one line
-  const char* reference;                             ///< author, year, equation
+  const char* name;  ///< key for parameters, YAML and --solver
+  std::unique_ptr<Solver> (*create)();  ///< with default options
+  const char* summary;  ///< one line
+  const char* reference;  ///< author, year, equation
 };
 
 /** @brief All methods, in the order of the README's table. */

@@ -10,6 +10,7 @@
 
 #include "frictional_contact_sim/problem/delassus_problem.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
+#include "frictional_contact_sim/problem/residual.h"
 
 namespace frictional_contact_sim
 {
@@ -30,9 +31,10 @@ const char* toString(SolverStatus status);
 /** @brief Stopping rule common to all methods. Budgets count iterations; time_limit is for the tools only. */
 struct StoppingOptions
 {
-  double tolerance = 1e-8;    ///< on the residual E of problem/residual.h [-], > 0
+  double tolerance = 1e-8;  ///< on the residual E of problem/residual.h [-], > 0
   int max_iterations = 1000;  ///< outer iterations of the method, >= 0
-  double time_limit = 0.0;    ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
+  double time_limit =
+      0.0;  ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -43,11 +45,11 @@ struct SolverResult
   SolverStatus status = SolverStatus::NOT_RUN;
   Solution solution;
   int iterations = 0;
-  double residual = 0.0;               ///< E, evaluated by Solver::solve, not by the method
-  double seconds = 0.0;                ///< wall-clock time of the call
-  std::string solver;                  ///< registry name of the method whose answer this is
-  std::vector<std::string> tried;      ///< names of the methods run, in order (portfolio)
-  std::string message;                 ///< why it stopped, one line, empty when converged
+  double residual = 0.0;  ///< E, evaluated by Solver::solve, not by the method
+  double seconds = 0.0;  ///< wall-clock time of the call
+  std::string solver;  ///< registry name of the method whose answer this is
+  std::vector<std::string> tried;  ///< names of the methods run, in order (portfolio)
+  std::string message;  ///< why it stopped, one line, empty when converged
 };
 
 class DelassusReduction;
@@ -74,26 +76,31 @@ public:
   SolverResult solve(const DelassusProblem& problem, const Solution* guess = nullptr);
   SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
 
-  const std::string& name() const
-  {
-    return name_;
-  }
+  const std::string& name() const { return name_; }
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
-  const StoppingOptions& stopping() const
-  {
-    return stopping_;
-  }
+  const StoppingOptions& stopping() const { return stopping_; }
 
 protected:
   /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
   virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
   bool timeIsUp() const;
+  /** @brief rho_i = 1/lambda_max(W_ii) of the problem being solved [kg]. */
+  const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
+  /** @brief E of the problem being solved at (u, r), u = W r + q given; costs no product with W. */
+  double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
 
 private:
+  double solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
+  void judge(double residual, double tolerance, SolverResult& result) const;
+
   std::string name_;
   StoppingOptions stopping_;
   std::chrono::steady_clock::time_point start_;
+  Eigen::VectorXd step_lengths_;
+  double free_velocity_ = 0.0;
+  GlobalResidualData global_;
+  Solution warm_;
   std::unique_ptr<DelassusReduction> reduction_;
 };
 

@@ -1,0 +1,131 @@
+#pragma once
+/**
+ * @file delassus_operator.h
+ * @brief The Delassus matrix W = H M^-1 H^T [1/kg] behind one concrete class: dense storage when small, block rows when
+ * large. No virtual call; the inner products are inline.
+ *
+ * Rows are grouped in blocks of 1, 2 or 3, one block a law, in the order of the laws.
+ *   dense    all rows, contiguous (row-major), so that a block's product is D dot products;
+ *   sparse   a block row stores the columns it touches and, column by column, its D values:  sum over touched columns.
+ * W need not be exactly symmetric (measured problems are not); nothing here assumes it.
+ */
+#include <Eigen/Core>
+#include <vector>
+
+#include "frictional_contact_sim/math/cone.h"
+#include "frictional_contact_sim/problem/incremental_problem.h"
+#include "frictional_contact_sim/problem/law.h"
+
+namespace frictional_contact_sim
+{
+class DelassusOperator
+{
+public:
+  using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  /// Up to this many rows W is always dense.
+  static constexpr int DENSE_ROWS = 96;
+  /// Above DENSE_ROWS, dense when at least this share of the entries is stored.
+  static constexpr double DENSE_SHARE = 0.4;
+
+  /** @brief Sets the blocks and dense storage (values undefined); fill it through dense(). No allocation when
+   * unchanged. */
+  void resizeDense(const std::vector<Law>& laws);
+  /** @brief The dense values, to be filled or read. Only valid when isDense(). */
+  Dense& dense() { return dense_; }
+  const Dense& dense() const { return dense_; }
+
+  /**
+   * @brief Sets the blocks and block-row storage with the given pattern, values zero.
+   * @param block_columns for each block row, the blocks it touches in ascending order, the diagonal always among them
+   */
+  void resizeSparse(const std::vector<Law>& laws, const std::vector<std::vector<int>>& block_columns);
+  /** @brief Values of block (i, j): dimension(i) x dimension(j), column-major. @return nullptr when not stored. */
+  double* block(int i, int j);
+
+  /** @brief Copies a matrix, choosing the storage by size and density. @throws std::invalid_argument on wrong shape. */
+  void assign(const SparseRows& matrix, const std::vector<Law>& laws);
+  void assign(const Eigen::MatrixXd& matrix, const std::vector<Law>& laws);
+
+  int rows() const { return offsets_.empty() ? 0 : offsets_.back(); }
+  int blocks() const { return static_cast<int>(offsets_.size()) - (offsets_.empty() ? 0 : 1); }
+  /** @brief First row of block i. */
+  int offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
+  int dimension(int i) const { return offset(i + 1) - offset(i); }
+  bool isDense() const { return is_dense_; }
+  /** @brief All stored values, for checks. */
+  const double* valueData() const { return is_dense_ ? dense_.data() : values_.data(); }
+  Eigen::Index valueCount() const { return is_dense_ ? dense_.size() : static_cast<Eigen::Index>(values_.size()); }
+
+  /** @brief y = W x; y must not alias x. */
+  void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  /** @brief (W x) restricted to block i. */
+  template <int D>
+  Vector<D> rowProduct(int i, const Eigen::VectorXd& x) const;
+  /** @brief W_ii. */
+  template <int D>
+  SquareMatrix<D> diagonalBlock(int i) const;
+
+  /** @brief Visits block row i: visit(column, pointer to D values, stride between them) for every stored column. */
+  template <typename Visitor>
+  void visitRow(int i, Visitor visit) const;
+
+  Eigen::MatrixXd toDense() const;
+  SparseRows toSparse() const;
+
+private:
+  void setBlocks(const std::vector<Law>& laws);
+
+  bool is_dense_ = true;
+  std::vector<int> offsets_;  ///< blocks + 1, first row of each block
+  Dense dense_;  ///< rows x rows, or empty
+  std::vector<int> columns_;  ///< touched columns, block row by block row
+  std::vector<int> row_begin_;  ///< blocks + 1, into columns_
+  std::vector<int> value_begin_;  ///< blocks + 1, into values_
+  std::vector<int> diagonal_;  ///< blocks, into values_: where W_ii starts
+  std::vector<double> values_;
+};
+
+template <int D>
+inline Vector<D> DelassusOperator::rowProduct(int i, const Eigen::VectorXd& x) const
+{
+  Vector<D> y;
+  if (is_dense_)
+  {
+    y.noalias() = dense_.middleRows<D>(offset(i)).lazyProduct(x);
+    return y;
+  }
+  y.setZero();
+  const auto row = static_cast<std::size_t>(i);
+  const double* value = values_.data() + value_begin_[row];
+  for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += D)
+    y += x[columns_[static_cast<std::size_t>(k)]] * Eigen::Map<const Vector<D>>(value);
+  return y;
+}
+
+template <int D>
+inline SquareMatrix<D> DelassusOperator::diagonalBlock(int i) const
+{
+  if (is_dense_)
+    return dense_.block<D, D>(offset(i), offset(i));
+  return Eigen::Map<const SquareMatrix<D>>(values_.data() + diagonal_[static_cast<std::size_t>(i)]);
+}
+
+template <typename Visitor>
+inline void DelassusOperator::visitRow(int i, Visitor visit) const
+{
+  if (is_dense_)
+  {
+    const double* value = dense_.data() + static_cast<std::ptrdiff_t>(offset(i)) * dense_.cols();
+    for (int column = 0; column < rows(); ++column)
+      visit(column, value + column, static_cast<int>(dense_.cols()));
+    return;
+  }
+  const auto row = static_cast<std::size_t>(i);
+  const int d = dimension(i);
+  const double* value = values_.data() + value_begin_[row];
+  for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += d)
+    visit(columns_[static_cast<std::size_t>(k)], value, 1);
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,45 @@
+#pragma once
+/**
+ * @file gauss_seidel.h
+ * @brief Nonsmooth Gauss-Seidel: contact by contact, each one solved exactly with the others' impulses frozen.
+ *
+ *   for i = 1..n:   r_i <- solution of  u_i = W_ii r_i + (q_i + sum_{j != i} W_ij r_j),  (u_i, r_i) in law_i
+ *
+ * Source: Cadoux (2009), 4.8.2; Jourdan, Alart, Jean (1998). The one-contact solver is solver/one_contact.h.
+ * Departures: a stall detector (the residual over the last window), and the residual is only evaluated when the change
+ * of a sweep makes convergence likely, or every check_interval sweeps.
+ */
+#include <Eigen/Core>
+
+#include "frictional_contact_sim/solver/solver.h"
+
+namespace frictional_contact_sim
+{
+struct GaussSeidelOptions
+{
+  int check_interval = 10;  ///< sweeps between two forced evaluations of the residual, >= 1
+  int stall_window = 0;  ///< sweeps after which the residual must have fallen by stall_factor, 0 = no detector
+  double stall_factor = 0.5;  ///< required ratio of residuals over a window [-], in (0, 1)
+  double relaxation = 1.0;  ///< r_i <- r_i + relaxation (new - old) [-], in (0, 2)
+
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+class GaussSeidel : public Solver
+{
+public:
+  explicit GaussSeidel(const GaussSeidelOptions& options = {});
+  void setOptions(const GaussSeidelOptions& options);
+
+protected:
+  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+
+private:
+  double sweep(const DelassusProblem& problem, Eigen::VectorXd& r) const;
+
+  GaussSeidelOptions options_;
+  Eigen::VectorXd velocity_;
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,113 @@
+#include "frictional_contact_sim/problem/mass_factor.h"
+
+#include <suitesparse/amd.h>
+// LDL's header forgets to say that it is C.
+extern "C" {
+#include <suitesparse/ldl.h>
+}
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace frictional_contact_sim
+{
+bool MassFactor::samePattern(const SparseRows& M) const
+{
+  const auto size = static_cast<std::size_t>(M.rows());
+  const auto entries = static_cast<std::size_t>(M.nonZeros());
+  return outer_.size() == size + 1 && inner_.size() == entries &&
+         std::equal(outer_.begin(), outer_.end(), M.outerIndexPtr()) &&
+         std::equal(inner_.begin(), inner_.end(), M.innerIndexPtr());
+}
+
+void MassFactor::analyse(const SparseRows& M)
+{
+  const int size = static_cast<int>(M.rows());
+  const auto count = static_cast<std::size_t>(size);
+  outer_.assign(M.outerIndexPtr(), M.outerIndexPtr() + size + 1);
+  inner_.assign(M.innerIndexPtr(), M.innerIndexPtr() + M.nonZeros());
+  for (std::vector<int>* array : {&permutation_, &inverse_permutation_, &parent_, &counts_, &flags_, &pattern_})
+    array->assign(count, 0);
+  column_begin_.assign(count + 1, 0);
+  if (size == 0)
+    return;
+  // M is symmetric with both triangles stored, so its compressed rows are its compressed columns.
+  if (amd_order(size, outer_.data(), inner_.data(), permutation_.data(), nullptr, nullptr) < AMD_OK)
+    throw std::invalid_argument("M: pattern is not a valid compressed matrix");
+  ldl_symbolic(size, outer_.data(), inner_.data(), column_begin_.data(), parent_.data(), counts_.data(), flags_.data(),
+               permutation_.data(), inverse_permutation_.data());
+  const auto fill = static_cast<std::size_t>(column_begin_[count]);
+  row_indices_.resize(fill);
+  values_.resize(fill);
+  pivots_.resize(count);
+  work_.resize(count);
+  inverse_root_pivots_.resize(size);
+  permuted_.resize(size);
+}
+
+bool MassFactor::compute(const SparseRows& M)
+{
+  const bool is_new = !samePattern(M);
+  if (is_new)
+    analyse(M);
+  const int size = static_cast<int>(M.rows());
+  if (size == 0)
+    return is_new;
+  // LDL's interface is not const-correct; it only reads the matrix.
+  const int done =
+      ldl_numeric(size, outer_.data(), inner_.data(), const_cast<double*>(M.valuePtr()), column_begin_.data(),
+                  parent_.data(), counts_.data(), row_indices_.data(), values_.data(), pivots_.data(), work_.data(),
+                  pattern_.data(), flags_.data(), permutation_.data(), inverse_permutation_.data());
+  for (int k = 0; k < size; ++k)
+  {
+    const double pivot = k < done ? pivots_[static_cast<std::size_t>(k)] : 0.0;
+    if (!(pivot > 0.0) || !std::isfinite(pivot))
+    {
+      outer_.clear();
+      throw std::invalid_argument("M is not positive definite: pivot of row " +
+                                  std::to_string(permutation_[static_cast<std::size_t>(k)]) + " is " +
+                                  std::to_string(pivot) + ", expected > 0");
+    }
+    inverse_root_pivots_[k] = 1.0 / std::sqrt(pivot);
+  }
+  return is_new;
+}
+
+void MassFactor::halfSolve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const
+{
+  const int size = this->size();
+  x.resize(size);
+  for (int k = 0; k < size; ++k)
+    x[k] = b[permutation_[static_cast<std::size_t>(k)]];
+  for (int k = 0; k < size; ++k)
+  {
+    const double value = x[k];
+    const auto column = static_cast<std::size_t>(k);
+    for (auto p = static_cast<std::size_t>(column_begin_[column]);
+         p < static_cast<std::size_t>(column_begin_[column + 1]); ++p)
+      x[row_indices_[p]] -= values_[p] * value;
+  }
+  x.array() *= inverse_root_pivots_.array();
+}
+
+void MassFactor::transposedHalfSolve(const Eigen::VectorXd& x, Eigen::VectorXd& v) const
+{
+  const int size = this->size();
+  permuted_.array() = x.array() * inverse_root_pivots_.array();
+  for (int k = size - 1; k >= 0; --k)
+  {
+    const auto column = static_cast<std::size_t>(k);
+    double value = permuted_[k];
+    for (auto p = static_cast<std::size_t>(column_begin_[column]);
+         p < static_cast<std::size_t>(column_begin_[column + 1]); ++p)
+      value -= values_[p] * permuted_[row_indices_[p]];
+    permuted_[k] = value;
+  }
+  v.resize(size);
+  for (int k = 0; k < size; ++k)
+    v[permutation_[static_cast<std::size_t>(k)]] = permuted_[k];
+}
+
+}  // namespace frictional_contact_sim

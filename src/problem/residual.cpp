@@ -1,0 +1,189 @@
+#include "frictional_contact_sim/problem/residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/law_functions.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Below any velocity that matters; keeps 0/0 away when everything is at rest without loads [m/s].
+constexpr double VELOCITY_FLOOR = 1e-12;
+
+double maxAbs(const Eigen::VectorXd& x)
+{
+  return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
+}
+
+double blockEigenvalue(const DelassusOperator& W, int block)
+{
+  if (W.dimension(block) == 3)
+    return largestEigenvalue(W.diagonalBlock<3>(block));
+  if (W.dimension(block) == 2)
+    return largestEigenvalue(W.diagonalBlock<2>(block));
+  return std::abs(W.diagonalBlock<1>(block)(0, 0));
+}
+}  // namespace
+
+void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_lengths)
+{
+  const int count = problem.W.blocks();
+  step_lengths.resize(count);
+  double largest = 0.0;
+  for (int i = 0; i < count; ++i)
+  {
+    step_lengths[i] = blockEigenvalue(problem.W, i);
+    largest = std::max(largest, step_lengths[i]);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    if (step_lengths[i] > 0.0)
+      step_lengths[i] = 1.0 / step_lengths[i];
+    else
+      step_lengths[i] = largest > 0.0 ? 1.0 / largest : 1.0;
+  }
+}
+
+double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
+                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors)
+{
+  if (errors != nullptr)
+    errors->resize(static_cast<Eigen::Index>(laws.size()));
+  double worst = 0.0;
+  double scale = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  int row = 0;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+  {
+    const auto index = static_cast<Eigen::Index>(i);
+    const int dimension = laws[i].dimension();
+    const double error = naturalMapError(laws[i], u.data() + row, r.data() + row, step_lengths[index]);
+    if (errors != nullptr)
+      (*errors)[index] = error;
+    // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
+    if (!(error <= worst))
+      worst = error;
+    scale = std::max(scale, r.segment(row, dimension).norm() / step_lengths[index]);
+    row += dimension;
+  }
+  return worst / scale;
+}
+
+double localResidual(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,
+                     Eigen::VectorXd& u)
+{
+  problem.W.apply(r, u);
+  u += problem.q;
+  return lawResidual(problem.laws, step_lengths, maxAbs(problem.q), u, r);
+}
+
+double GlobalResidual::value() const
+{
+  double worst = law;
+  for (const double part : {dynamics, bilateral})
+    if (!(part <= worst))
+      worst = part;
+  return worst;
+}
+
+GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualData& data, Solution& solution)
+{
+  GlobalResidual residual;
+  solution.u.resize(problem.rows());
+  solution.u.noalias() = problem.H * solution.v;
+  solution.u += problem.w;
+  residual.law = lawResidual(problem.laws, data.step_lengths, data.free_velocity, solution.u, solution.r);
+
+  data.momentum.resize(problem.velocities());
+  data.term.resize(problem.velocities());
+  data.momentum.noalias() = problem.M * solution.v;
+  double scale = std::max(maxAbs(data.momentum), maxAbs(problem.f));
+  data.momentum += problem.f;
+  data.term.noalias() = problem.H.transpose() * solution.r;
+  scale = std::max(scale, maxAbs(data.term));
+  data.momentum -= data.term;
+  if (problem.bilaterals() > 0)
+  {
+    data.term.noalias() = problem.G.transpose() * solution.lambda;
+    scale = std::max(scale, maxAbs(data.term));
+    data.momentum -= data.term;
+  }
+  residual.dynamics = scale > 0.0 ? maxAbs(data.momentum) / scale : 0.0;
+
+  double worst = 0.0;
+  double largest = maxAbs(problem.b);
+  for (int row = 0; row < problem.bilaterals(); ++row)
+  {
+    double sum = problem.b[row];
+    for (SparseRows::InnerIterator entry(problem.G, row); entry; ++entry)
+    {
+      sum += entry.value() * solution.v[entry.col()];
+      largest = std::max({largest, std::abs(entry.value() * solution.v[entry.col()]),
+                          std::abs(entry.value() * data.mass_inverse_force[entry.col()])});
+    }
+    if (!(std::abs(sum) <= worst))
+      worst = std::abs(sum);
+  }
+  residual.bilateral = largest > 0.0 ? worst / largest : worst;
+  return residual;
+}
+
+double evaluateResidual(const DelassusProblem& problem, const Eigen::VectorXd& r)
+{
+  Eigen::VectorXd step_lengths, u;
+  computeStepLengths(problem, step_lengths);
+  return localResidual(problem, step_lengths, r, u);
+}
+
+GlobalResidual evaluateResidual(const IncrementalProblem& problem, const Solution& solution)
+{
+  DelassusReduction reduction;
+  reduction.compute(problem);
+  GlobalResidualData data;
+  data.step_lengths = reduction.stepLengths();
+  data.free_velocity = reduction.freeVelocity();
+  data.mass_inverse_force = reduction.massInverseForce();
+  Solution copy = solution;
+  return globalResidual(problem, data, copy);
+}
+
+Diagnostics diagnose(const std::vector<Law>& laws, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                     const Eigen::VectorXd& r)
+{
+  Diagnostics result;
+  double squares = 0.0;
+  int row = 0;
+  for (const Law& law : laws)
+  {
+    const int dimension = law.dimension();
+    const double error = naturalMapError(law, u.data() + row, r.data() + row, 1.0);
+    squares += error * error;
+    Eigen::Vector3d projected = Eigen::Vector3d::Zero();
+    projected.head(dimension) = r.segment(row, dimension);
+    projectImpulse(law, projected.data());
+    result.cone_violation =
+        std::max(result.cone_violation, (r.segment(row, dimension) - projected.head(dimension)).norm());
+    if (law.isCoulomb() || law.type == LawType::UNILATERAL)
+    {
+      result.negative_velocity = std::max(result.negative_velocity, -u[row]);
+      result.complementarity = std::max(result.complementarity, std::abs(u[row] * r[row]));
+    }
+    if (law.isCoulomb())
+    {
+      const auto velocity = u.segment(row + 1, dimension - 1);
+      const auto impulse = r.segment(row + 1, dimension - 1);
+      result.maximum_dissipation =
+          std::max(result.maximum_dissipation, std::abs(impulse.norm() * velocity.norm() + impulse.dot(velocity)));
+    }
+    row += dimension;
+  }
+  const double error = std::sqrt(squares);
+  const double scale = std::max({q.norm(), r.norm(), u.norm()});
+  result.siconos_error = scale > 0.0 ? error / scale : 0.0;
+  result.natural_map_1q = error / (1.0 + q.norm());
+  return result;
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,85 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "frictional_contact_sim/problem/delassus_problem.h"
+#include "frictional_contact_sim/problem/incremental_problem.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+void expectShape(const char* name, const SparseRows& matrix, int rows, int columns)
+{
+  // A matrix without rows may have been left at its default of 0 x 0.
+  const bool fits = matrix.rows() == rows && (matrix.cols() == columns || rows == 0);
+  if (!fits)
+    throw std::invalid_argument(std::string(name) + " is " + std::to_string(matrix.rows()) + " x " +
+                                std::to_string(matrix.cols()) + ", expected " + std::to_string(rows) + " x " +
+                                std::to_string(columns));
+  if (!matrix.isCompressed())
+    throw std::invalid_argument(std::string(name) + " is not compressed, expected compressed rows (makeCompressed())");
+}
+
+void expectSize(const char* name, const Eigen::VectorXd& vector, int size)
+{
+  if (vector.size() != size)
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(vector.size()) + " entries, expected " +
+                                std::to_string(size));
+}
+
+void expectFinite(const char* name, const double* values, Eigen::Index count)
+{
+  // One sum instead of a test an entry: 0 * x is 0 for finite x, NaN otherwise. This runs every step.
+  double zero = 0.0;
+  for (Eigen::Index k = 0; k < count; ++k)
+    zero += 0.0 * values[k];
+  if (zero == 0.0)
+    return;
+  for (Eigen::Index k = 0; k < count; ++k)
+    if (!std::isfinite(values[k]))
+      throw std::invalid_argument(std::string(name) + " entry " + std::to_string(k) + " is " +
+                                  std::to_string(values[k]) + ", expected a finite number");
+}
+
+void expectLaws(const std::vector<Law>& laws)
+{
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (!std::isfinite(laws[i].coefficient) || laws[i].coefficient < 0.0)
+      throw std::invalid_argument("laws[" + std::to_string(i) + "].coefficient is " +
+                                  std::to_string(laws[i].coefficient) + ", expected a finite number >= 0");
+}
+}  // namespace
+
+void validate(const IncrementalProblem& problem)
+{
+  const int velocities = problem.velocities();
+  expectLaws(problem.laws);
+  const int rows = rowCount(problem.laws);
+  expectShape("M", problem.M, velocities, velocities);
+  expectShape("H", problem.H, rows, velocities);
+  expectShape("G", problem.G, problem.bilaterals(), velocities);
+  expectSize("w", problem.w, rows);
+  expectFinite("M", problem.M.valuePtr(), problem.M.nonZeros());
+  expectFinite("H", problem.H.valuePtr(), problem.H.nonZeros());
+  expectFinite("G", problem.G.valuePtr(), problem.G.nonZeros());
+  expectFinite("f", problem.f.data(), problem.f.size());
+  expectFinite("w", problem.w.data(), problem.w.size());
+  expectFinite("b", problem.b.data(), problem.b.size());
+}
+
+void validate(const DelassusProblem& problem)
+{
+  expectLaws(problem.laws);
+  const int rows = rowCount(problem.laws);
+  const DelassusOperator& W = problem.W;
+  if (W.blocks() != static_cast<int>(problem.laws.size()) || W.rows() != rows)
+    throw std::invalid_argument("W has " + std::to_string(W.rows()) + " rows in " + std::to_string(W.blocks()) +
+                                " blocks, expected " + std::to_string(rows) + " in " +
+                                std::to_string(problem.laws.size()) + " for the given laws");
+  expectSize("q", problem.q, rows);
+  expectFinite("q", problem.q.data(), rows);
+  expectFinite("W", W.valueData(), W.valueCount());
+}
+
+}  // namespace frictional_contact_sim

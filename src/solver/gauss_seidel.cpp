@@ -1,0 +1,130 @@
+#include "frictional_contact_sim/solver/gauss_seidel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "frictional_contact_sim/solver/one_contact.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// The residual is worth a look when the largest change of a sweep, as a velocity, is below this multiple of tolerance.
+constexpr double LIKELY = 2.0;
+
+template <int D>
+double updateContact(const DelassusProblem& problem, int i, double relaxation, Eigen::VectorXd& r, double& scale)
+{
+  auto impulse = r.segment<D>(problem.W.offset(i));
+  const SquareMatrix<D> W = problem.W.diagonalBlock<D>(i);
+  const Vector<D> old = impulse;
+  const Vector<D> u = problem.W.rowProduct<D>(i, r) + problem.q.segment<D>(problem.W.offset(i));
+  const Vector<D> free = u - W * old;
+  impulse = solveCoulomb(W, free, problem.laws[static_cast<std::size_t>(i)].coefficient);
+  if (relaxation != 1.0)
+    impulse = old + relaxation * (Vector<D>(impulse) - old);
+  const Vector<D> change = W * (Vector<D>(impulse) - old);
+  scale = std::max(scale, free.cwiseAbs().maxCoeff());
+  return change.norm();
+}
+}  // namespace
+
+void GaussSeidelOptions::validate() const
+{
+  if (check_interval < 1)
+    throw std::invalid_argument("gauss_seidel.check_interval is " + std::to_string(check_interval) + ", expected >= 1");
+  if (stall_window < 0)
+    throw std::invalid_argument("gauss_seidel.stall_window is " + std::to_string(stall_window) + ", expected >= 0");
+  if (!(stall_factor > 0.0 && stall_factor < 1.0))
+    throw std::invalid_argument("gauss_seidel.stall_factor is " + std::to_string(stall_factor) +
+                                ", expected in (0, 1)");
+  if (!(relaxation > 0.0 && relaxation < 2.0))
+    throw std::invalid_argument("gauss_seidel.relaxation is " + std::to_string(relaxation) + ", expected in (0, 2)");
+}
+
+GaussSeidel::GaussSeidel(const GaussSeidelOptions& options) : Solver("gauss_seidel"), options_(options)
+{
+  options_.validate();
+}
+
+void GaussSeidel::setOptions(const GaussSeidelOptions& options)
+{
+  options.validate();
+  options_ = options;
+}
+
+double GaussSeidel::sweep(const DelassusProblem& problem, Eigen::VectorXd& r) const
+{
+  double change = 0.0;
+  double scale = std::numeric_limits<double>::min();
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    if (law.type == LawType::COULOMB_3D)
+      change = std::max(change, updateContact<3>(problem, i, options_.relaxation, r, scale));
+    else if (law.type == LawType::COULOMB_2D)
+      change = std::max(change, updateContact<2>(problem, i, options_.relaxation, r, scale));
+    else
+    {
+      const int row = problem.W.offset(i);
+      const double W = problem.W.diagonalBlock<1>(i)(0, 0);
+      const double free = problem.W.rowProduct<1>(i, r)[0] + problem.q[row] - W * r[row];
+      const double solved = solveOneDimensional(law, W, free, r[row]);
+      const double step = options_.relaxation * (solved - r[row]);
+      r[row] += step;
+      change = std::max(change, std::abs(W * step));
+      scale = std::max(scale, std::abs(free));
+    }
+  }
+  return change / scale;
+}
+
+void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  Eigen::VectorXd& r = result.solution.r;
+  const double tolerance = stopping().tolerance;
+  double window_start = std::numeric_limits<double>::infinity();
+  int window_end = options_.stall_window;
+  for (int k = 0;; ++k)
+  {
+    const bool last = k >= stopping().max_iterations;
+    const double change = last ? 0.0 : sweep(problem, r);
+    result.iterations = last ? k : k + 1;
+    if (!last && change > LIKELY * tolerance && (k + 1) % options_.check_interval != 0)
+      continue;
+    const double value = localResidual(problem, stepLengths(), r, velocity_);
+    if (value <= tolerance)
+    {
+      result.status = SolverStatus::CONVERGED;
+      return;
+    }
+    if (last)
+    {
+      result.status = SolverStatus::MAX_ITERATIONS;
+      result.message = "sweeps exhausted";
+      return;
+    }
+    if (change == 0.0 ||
+        (options_.stall_window > 0 && k + 1 >= window_end && value > options_.stall_factor * window_start))
+    {
+      result.status = SolverStatus::STAGNATED;
+      result.message = "the sweeps no longer reduce the residual";
+      return;
+    }
+    if (options_.stall_window > 0 && k + 1 >= window_end)
+    {
+      window_start = value;
+      window_end = k + 1 + options_.stall_window;
+    }
+    if (timeIsUp())
+    {
+      result.status = SolverStatus::TIME_LIMIT;
+      result.message = "time limit reached";
+      return;
+    }
+  }
+}
+
+}  // namespace frictional_contact_sim

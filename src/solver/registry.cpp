@@ -1,0 +1,40 @@
+#include "frictional_contact_sim/solver/registry.h"
+
+#include <stdexcept>
+
+#include "frictional_contact_sim/solver/gauss_seidel.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+template <typename Method>
+std::unique_ptr<Solver> create()
+{
+  return std::make_unique<Method>();
+}
+}  // namespace
+
+const std::vector<SolverEntry>& solverRegistry()
+{
+  static const std::vector<SolverEntry> registry = {
+      {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
+       "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
+  };
+  return registry;
+}
+
+std::unique_ptr<Solver> createSolver(const std::string& name)
+{
+  std::string valid;
+  for (const SolverEntry& entry : solverRegistry())
+  {
+    if (name == entry.name)
+      return entry.create();
+    valid += valid.empty() ? "" : ", ";
+    valid += entry.name;
+  }
+  throw std::invalid_argument("unknown solver '" + name + "', expected one of: " + valid);
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,207 @@
+#include "frictional_contact_sim/solver/solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Attempts to get the global residual below the tolerance when the local one was and its own was not.
+constexpr int REFINEMENTS = 3;
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double maxAbs(const Eigen::VectorXd& x)
+{
+  return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
+}
+
+void checkGuess(const Solution& guess, int rows)
+{
+  if (guess.r.size() != rows)
+    throw std::invalid_argument("guess.r has " + std::to_string(guess.r.size()) + " entries, expected " +
+                                std::to_string(rows));
+  if (!guess.r.allFinite())
+    throw std::invalid_argument("guess.r has an entry that is not finite");
+}
+
+void clear(SolverResult& result)
+{
+  result.status = SolverStatus::NOT_RUN;
+  result.iterations = 0;
+  result.residual = 0.0;
+  result.seconds = 0.0;
+  result.solver.clear();
+  result.tried.clear();
+  result.message.clear();
+}
+}  // namespace
+
+const char* toString(SolverStatus status)
+{
+  switch (status)
+  {
+    case SolverStatus::NOT_RUN:
+      return "NOT_RUN";
+    case SolverStatus::CONVERGED:
+      return "CONVERGED";
+    case SolverStatus::MAX_ITERATIONS:
+      return "MAX_ITERATIONS";
+    case SolverStatus::TIME_LIMIT:
+      return "TIME_LIMIT";
+    case SolverStatus::STAGNATED:
+      return "STAGNATED";
+    case SolverStatus::NUMERICAL_FAILURE:
+      return "NUMERICAL_FAILURE";
+    case SolverStatus::STOPPED_BY_USER:
+      return "STOPPED_BY_USER";
+  }
+  return "UNKNOWN";
+}
+
+void StoppingOptions::validate() const
+{
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance))
+    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) + ", expected a finite number > 0");
+  if (max_iterations < 0)
+    throw std::invalid_argument("max_iterations is " + std::to_string(max_iterations) + ", expected >= 0");
+  if (!(time_limit >= 0.0))
+    throw std::invalid_argument("time_limit is " + std::to_string(time_limit) + ", expected >= 0");
+}
+
+Solver::Solver(std::string name) : name_(std::move(name)), reduction_(std::make_unique<DelassusReduction>())
+{
+}
+
+Solver::~Solver() = default;
+
+void Solver::setStopping(const StoppingOptions& stopping)
+{
+  stopping.validate();
+  stopping_ = stopping;
+}
+
+bool Solver::timeIsUp() const
+{
+  return stopping_.time_limit > 0.0 && secondsSince(start_) > stopping_.time_limit;
+}
+
+double Solver::residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const
+{
+  return lawResidual(problem.laws, step_lengths_, free_velocity_, u, r);
+}
+
+double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
+{
+  const int rows = problem.W.rows();
+  computeStepLengths(problem, step_lengths_);
+  free_velocity_ = maxAbs(problem.q);
+  if (guess != nullptr)
+    result.solution.r = guess->r;
+  else
+    result.solution.r.setZero(rows);
+  if (rows == 0)
+  {
+    result.solution.u.resize(0);
+    result.status = SolverStatus::CONVERGED;
+    return 0.0;
+  }
+  doSolve(problem, result);
+  if (!result.solution.r.allFinite())
+  {
+    result.solution.r.setZero();
+    result.status = SolverStatus::NUMERICAL_FAILURE;
+    result.message = "an impulse is not finite";
+  }
+  return localResidual(problem, step_lengths_, result.solution.r, result.solution.u);
+}
+
+void Solver::judge(double residual, double tolerance, SolverResult& result) const
+{
+  result.residual = residual;
+  if (result.solver.empty())
+    result.solver = name_;
+  if (result.tried.empty())
+    result.tried.push_back(name_);
+  if (residual <= tolerance)
+  {
+    result.status = SolverStatus::CONVERGED;
+    result.message.clear();
+  }
+  else if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
+  {
+    result.status = SolverStatus::STAGNATED;
+    result.message = "the method reported convergence, the residual does not confirm it";
+  }
+  result.seconds = secondsSince(start_);
+}
+
+void Solver::solve(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
+{
+  start_ = std::chrono::steady_clock::now();
+  validate(problem);
+  if (guess != nullptr)
+    checkGuess(*guess, problem.W.rows());
+  clear(result);
+  result.solution.v.resize(0);
+  result.solution.lambda.resize(0);
+  const double value = solveLocal(problem, guess, result);
+  judge(value, stopping_.tolerance, result);
+}
+
+void Solver::solve(const IncrementalProblem& problem, const Solution* guess, SolverResult& result)
+{
+  start_ = std::chrono::steady_clock::now();
+  validate(problem);
+  if (guess != nullptr)
+    checkGuess(*guess, problem.rows());
+  clear(result);
+  reduction_->compute(problem);
+  const DelassusProblem& local = reduction_->problem();
+  global_.step_lengths = reduction_->stepLengths();
+  global_.free_velocity = reduction_->freeVelocity();
+  global_.mass_inverse_force = reduction_->massInverseForce();
+
+  const double tolerance = stopping_.tolerance;
+  double local_value = solveLocal(local, guess, result);
+  reduction_->recover(problem, result.solution);
+  GlobalResidual value = globalResidual(problem, global_, result.solution);
+  // The global form measures with the unconstrained W_ii and with u from v: ask for a little more when that matters.
+  for (int k = 0; k < REFINEMENTS && local_value <= stopping_.tolerance && value.law > tolerance; ++k)
+  {
+    stopping_.tolerance *= std::max(0.3 * tolerance / value.law, 0.01);
+    warm_.r = result.solution.r;
+    const int iterations = result.iterations;
+    result.tried.clear();
+    result.solver.clear();
+    local_value = solveLocal(local, &warm_, result);
+    result.iterations += iterations;
+    reduction_->recover(problem, result.solution);
+    value = globalResidual(problem, global_, result.solution);
+  }
+  stopping_.tolerance = tolerance;
+  judge(value.value(), tolerance, result);
+}
+
+SolverResult Solver::solve(const DelassusProblem& problem, const Solution* guess)
+{
+  SolverResult result;
+  solve(problem, guess, result);
+  return result;
+}
+
+SolverResult Solver::solve(const IncrementalProblem& problem, const Solution* guess)
+{
+  SolverResult result;
+  solve(problem, guess, result);
+  return result;
+}
+
+}  // namespace frictional_contact_sim
