@@ -12,6 +12,9 @@ namespace
 {
 using tinyxml2::XMLElement;
 
+/// Shorter axes have no direction to speak of [-].
+constexpr double LEAST_AXIS = 1e-9;
+
 /** Calls visit for each child element of that name. */
 template <typename Visitor>
 void forEachChild(XMLElement& parent, const char* name, const Visitor& visit)
@@ -140,6 +143,10 @@ void checkLimit(XMLElement& joint, const std::string& label, const std::string& 
            label + ": <limit> lower = " + limit->Attribute("lower") + " is above upper = " +
                (limit->Attribute("upper") == nullptr ? "0 (the default)" : limit->Attribute("upper")));
   }
+  if (isType(joint, {"revolute", "prismatic"}) && lower == upper)
+  {
+    omissions.addNote("<limit> with lower = upper: the joint cannot move", label);
+  }
   if (isType(joint, {"continuous"}) && (lower != 0.0 || upper != 0.0))
   {
     omissions.add("lower and upper of <limit> in a continuous joint", label);
@@ -199,8 +206,7 @@ void checkJoint(XMLElement& joint, const Names& joints, const std::string& sourc
   checkLimit(joint, label, source, omissions);
   checkMimic(joint, joints, label, source);
   const XMLElement* axis = joint.FirstChildElement("axis");
-  if (axis != nullptr && std::string(axis->Attribute("xyz")).find_first_of("123456789") == std::string::npos &&
-      !isType(joint, {"floating"}))
+  if (axis != nullptr && largestMagnitude(axis->Attribute("xyz")) < LEAST_AXIS && !isType(joint, {"floating"}))
   {
     failAt(source, axis->GetLineNum(), label + ": <axis> xyz = '" + axis->Attribute("xyz") + "', expected a direction");
   }

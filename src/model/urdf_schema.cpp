@@ -342,6 +342,17 @@ bool parseNumber(const std::string& text, double& value)
   return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
+double largestMagnitude(const std::string& numbers)
+{
+  double largest = 0.0;
+  for (const std::string& word : splitWords(numbers))
+  {
+    double value = 0.0;
+    largest = parseNumber(word, value) ? std::max(largest, std::abs(value)) : largest;
+  }
+  return largest;
+}
+
 void applySchema(XMLElement& robot, const std::string& source, OmissionTally& omissions)
 {
   applyToElement(robot, source, omissions);

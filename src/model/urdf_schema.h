@@ -46,6 +46,9 @@ std::string describeOwner(const tinyxml2::XMLElement& element);
 /** @brief A finite double and nothing else. @return false otherwise */
 bool parseNumber(const std::string& text, double& value);
 
+/** @brief Greatest absolute value of the numbers in a list separated by blanks; 0 for none. */
+double largestMagnitude(const std::string& numbers);
+
 /**
  * @brief Checks the children of <robot> and removes what is not read (unknown elements go to the tally, visuals and
  * materials silently: nothing here draws).
