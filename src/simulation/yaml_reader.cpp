@@ -22,7 +22,7 @@ void YamlReader::fail(const std::string& reason) const
 
 void YamlReader::expectMap() const
 {
-  if (!node_.IsMap())
+  if (!node_.IsDefined() || !node_.IsMap())
     fail("found " + found() + ", expected a map");
 }
 
@@ -44,14 +44,14 @@ void YamlReader::expectMap(std::initializer_list<const char*> keys) const
 
 void YamlReader::expectSequence(const std::string& of_what) const
 {
-  if (!node_.IsSequence())
+  if (!node_.IsDefined() || !node_.IsSequence())
     fail("found " + found() + ", expected a list of " + of_what);
 }
 
 double YamlReader::number() const
 {
   double value = 0.0;
-  if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value))
+  if (!node_.IsDefined() || !node_.IsScalar() || !YAML::convert<double>::decode(node_, value))
     fail("found " + found() + ", expected a number");
   if (!std::isfinite(value))
     fail("found " + found() + ", expected a finite number");
@@ -69,7 +69,7 @@ double YamlReader::number(double lower, double upper, const std::string& expecte
 int YamlReader::integer(int lower) const
 {
   int value = 0;
-  if (!node_.IsScalar() || !YAML::convert<int>::decode(node_, value) || value < lower)
+  if (!node_.IsDefined() || !node_.IsScalar() || !YAML::convert<int>::decode(node_, value) || value < lower)
     fail("found " + found() + ", expected a whole number of at least " + std::to_string(lower));
   return value;
 }
@@ -77,21 +77,21 @@ int YamlReader::integer(int lower) const
 bool YamlReader::boolean() const
 {
   bool value = false;
-  if (!node_.IsScalar() || !YAML::convert<bool>::decode(node_, value))
+  if (!node_.IsDefined() || !node_.IsScalar() || !YAML::convert<bool>::decode(node_, value))
     fail("found " + found() + ", expected true or false");
   return value;
 }
 
 std::string YamlReader::text() const
 {
-  if (!node_.IsScalar() || node_.Scalar().empty())
+  if (!node_.IsDefined() || !node_.IsScalar() || node_.Scalar().empty())
     fail("found " + found() + ", expected a text");
   return node_.Scalar();
 }
 
 Eigen::Vector3d YamlReader::vector3() const
 {
-  if (!node_.IsSequence() || node_.size() != 3)
+  if (!node_.IsDefined() || !node_.IsSequence() || node_.size() != 3)
     fail("found " + found() + ", expected a list of 3 numbers");
   return {item(0).number(), item(1).number(), item(2).number()};
 }
