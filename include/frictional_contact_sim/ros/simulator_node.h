@@ -1,11 +1,79 @@
 #pragma once
 /**
  * @file simulator_node.h
- * @brief The ROS node around one Simulator.
+ * @brief The ROS node around one Simulator: services, commands and the run in real time. One thread: callbacks are
+ * served between steps, so that a run without commands depends on nothing but its input.
  */
+#include <frictional_contact_sim/Step.h>
+#include <ros/node_handle.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <std_srvs/Empty.h>
+#include <std_srvs/SetBool.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/ros/command.h"
+#include "frictional_contact_sim/ros/delivery.h"
+#include "frictional_contact_sim/ros/pacer.h"
+#include "frictional_contact_sim/ros/step_publisher.h"
+
 namespace frictional_contact_sim
 {
-/** @brief The whole program. @return exit code: 0 done or interrupted, 1 a step failed (~on_failure stop), 2 bad input */
+class SimulatorNode
+{
+public:
+  /** @throws ParameterError, ModelError, ScenarioError, std::invalid_argument: one line */
+  SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_node, const NodeParameters& parameters);
+
+  /** @brief Runs until ~num_steps, a failed step under ~on_failure stop, or a shutdown. @return exit code 0 or 1 */
+  int run();
+
+private:
+  enum class Outcome
+  {
+    GO_ON,
+    PAUSED,
+    FINISHED,
+    FAILED
+  };
+
+  void advertiseServices(ros::NodeHandle& private_node);
+  void subscribeCommands(ros::NodeHandle& private_node);
+  void setServoGains();
+
+  Outcome advance();
+  Outcome judge(const StepSummary& summary);
+  void runStep();
+  void idle();
+  void holdForSubscribers();
+  bool subscribersStand();
+  void setPaused(bool paused);
+  void reset();
+  void resetTime();
+  bool stepService(Step::Request& request, Step::Response& response);
+  void command(const std::string& topic, JointCommand::Mode mode, const std::function<JointTargets()>& targets);
+
+  NodeParameters parameters_;
+  Simulator simulator_;
+  NameTable names_;
+  StepPublisher publisher_;
+  DeliveryMonitor delivery_;
+  Pacer pacer_;
+  std::vector<std::string> awaited_topics_;  // resolved
+  std::vector<ros::ServiceServer> services_;
+  std::vector<ros::Subscriber> subscribers_;
+  bool paused_ = false;
+  bool waiting_ = false;
+  std::int64_t steps_done_ = 0;
+  Outcome outcome_ = Outcome::GO_ON;
+};
+
+/**
+ * @brief The whole program, without main's frame.
+ * @return exit code: 0 done or interrupted, 1 a step failed (~on_failure stop), 2 bad input
+ */
 int runSimulatorNode(int argc, char** argv);
 
 }  // namespace frictional_contact_sim

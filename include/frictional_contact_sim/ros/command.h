@@ -1,0 +1,42 @@
+#pragma once
+/**
+ * @file command.h
+ * @brief Command messages to joint commands: pure functions that take a message as a whole or not at all.
+ */
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frictional_contact_sim/ros/names.h"
+#include "frictional_contact_sim/ros/parameters.h"
+
+namespace frictional_contact_sim
+{
+/** @brief One line: why a command was not taken. */
+class CommandError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/** @brief Index into NameTable::joints and the target there. */
+using JointTargets = std::vector<std::pair<int, double>>;
+
+/**
+ * @brief sensor_msgs/JointState's form: names and their values.
+ * @throws CommandError unknown or mimic joint, joint named twice, wrong length, number that is not finite
+ */
+JointTargets namedTargets(const NameTable& names, const std::vector<std::string>& joints,
+                          const std::vector<double>& values, const std::string& field);
+/**
+ * @brief std_msgs/Float64MultiArray's form: one value for each actuated joint, in the order of joint_states.
+ * @throws CommandError wrong length, number that is not finite
+ */
+JointTargets orderedTargets(const NameTable& names, const std::vector<double>& values);
+
+/** @brief The servo of a joint: its own gains, else those of `default`, else defaults from its inertia. */
+JointCommand positionCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains);
+
+}  // namespace frictional_contact_sim

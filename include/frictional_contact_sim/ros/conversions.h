@@ -1,0 +1,38 @@
+#pragma once
+/**
+ * @file conversions.h
+ * @brief Simulator state to messages: pure functions. Messages are reused from step to step, so that their strings and
+ * arrays are allocated once.
+ *
+ * Everything is in the world frame except Odometry's twist, which nav_msgs wants in the child frame.
+ */
+#include <frictional_contact_sim/ContactArray.h>
+#include <frictional_contact_sim/StepReport.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/time.h>
+#include <sensor_msgs/JointState.h>
+
+#include "frictional_contact_sim/ros/names.h"
+#include "frictional_contact_sim/simulation/simulator.h"
+
+namespace frictional_contact_sim
+{
+extern const char* const WORLD_FRAME;
+
+/** @brief Simulated seconds to a stamp, rounded to nanoseconds. */
+ros::Time toStamp(double seconds);
+
+void fillJointState(const Simulator& simulator, const NameTable& names, const ros::Time& stamp,
+                    sensor_msgs::JointState& message);
+void fillContacts(const Simulator& simulator, const NameTable& names, const ros::Time& stamp, ContactArray& message);
+/** @brief existence and uniqueness are NOT_CHECKED: a step does not prove them. */
+void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message);
+/** @brief Pose and velocity of the root link of a robot. */
+void fillOdometry(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
+                  nav_msgs::Odometry& message);
+/** @brief world -> root link of a robot. */
+void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
+                   geometry_msgs::TransformStamped& message);
+
+}  // namespace frictional_contact_sim

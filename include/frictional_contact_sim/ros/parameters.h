@@ -1,0 +1,66 @@
+#pragma once
+/**
+ * @file parameters.h
+ * @brief The node's private parameters as one struct; a pure function reads and checks them (README lists them all).
+ */
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/simulation/scenario.h"
+#include "frictional_contact_sim/simulation/simulator.h"
+
+namespace XmlRpc
+{
+class XmlRpcValue;
+}
+
+namespace frictional_contact_sim
+{
+/** @brief One line: parameter, what was found, what was expected. */
+class ParameterError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/** @brief Gains of ~command/position; unset numbers get defaults from the joint's inertia. */
+struct ServoGains
+{
+  double kp = std::numeric_limits<double>::quiet_NaN();  ///< [N m/rad] or [N/m]
+  double kd = std::numeric_limits<double>::quiet_NaN();  ///< [N m s/rad] or [N s/m]
+  double max_effort = std::numeric_limits<double>::infinity();  ///< besides the URDF's limit [N m] or [N]
+};
+
+struct NodeParameters
+{
+  Scenario scenario;  ///< of ~scenario, or made from robot_description and the parameters
+  FailurePolicy on_failure = FailurePolicy::STOP;
+  double real_time_factor = 1.0;  ///< simulated over wall-clock time; 0 = as fast as possible
+  double publish_rate = 0.0;  ///< of joint_states, contacts, step_report, odometry; 0 = every step [1/s simulated]
+  double clock_rate = 0.0;  ///< of /clock; 0 = every step [1/s simulated]
+  double tf_rate = 100.0;  ///< of /tf; 0 = every step [1/s simulated]
+  double marker_rate = 30.0;  ///< of ~markers; 0 = every step [1/s simulated]
+  double force_scale = 0.0;  ///< length of force arrows [m/N]; 0 = half a metre for the weight of all robots
+  bool start_paused = false;
+  std::vector<std::string> wait_for_subscribers;  ///< topics that must have a subscriber before the first step
+  std::int64_t num_steps = 0;  ///< exit after so many; 0 = never
+  std::string dump_dir;  ///< FCLib files of failed steps; empty = none
+  std::string bag;  ///< file that a recorder is to write: its folder is checked
+  bool publish_base_tf = true;
+  std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others
+  int seed = 0;  ///< of methods with random numbers
+  std::vector<std::string> warnings;  ///< unknown or unused parameters, one line each
+};
+
+/**
+ * @param tree content of the node's private namespace (a struct; anything else counts as empty)
+ * @param robot_description the URDF document, empty when there is none
+ * @throws ParameterError, ScenarioError
+ */
+NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description);
+
+}  // namespace frictional_contact_sim

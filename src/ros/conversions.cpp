@@ -1,0 +1,221 @@
+#include "frictional_contact_sim/ros/conversions.h"
+
+#include <cmath>
+#include <limits>
+
+namespace frictional_contact_sim
+{
+const char* const WORLD_FRAME = "world";
+
+namespace
+{
+void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target)
+{
+  target.x = source.x();
+  target.y = source.y();
+  target.z = source.z();
+}
+
+void fillPoint(const Eigen::Vector3d& source, geometry_msgs::Point& target)
+{
+  target.x = source.x();
+  target.y = source.y();
+  target.z = source.z();
+}
+
+void fillQuaternion(const Eigen::Matrix3d& rotation, geometry_msgs::Quaternion& target)
+{
+  const Eigen::Quaterniond quaternion(rotation);
+  target.x = quaternion.x();
+  target.y = quaternion.y();
+  target.z = quaternion.z();
+  target.w = quaternion.w();
+}
+
+/** @brief Pose of the root link: the body frame of body 0 is the frame of the link it is named after. */
+const Eigen::Isometry3d& rootPose(const Simulator& simulator, int body)
+{
+  return simulator.data(body).body_pose.front();
+}
+
+void fillHeader(const ros::Time& stamp, std_msgs::Header& header)
+{
+  header.stamp = stamp;
+  header.frame_id = WORLD_FRAME;
+}
+
+void fillSide(const ShapeInfo& shape, const NameTable& names, std::string& body, std::string& link,
+              std::string& collision)
+{
+  if (shape.robot >= 0)
+  {
+    body = names.robots[shape.robot];
+  }
+  else
+  {
+    body.clear();
+  }
+  link = shape.link;
+  collision = shape.name;
+}
+
+std::uint8_t toMessage(ContactMode mode)
+{
+  switch (mode)
+  {
+    case ContactMode::STICKING:
+      return Contact::STICKING;
+    case ContactMode::SLIDING:
+      return Contact::SLIDING;
+    case ContactMode::IMPACT:
+      return Contact::IMPACT;
+    case ContactMode::OPEN:
+      break;
+  }
+  return Contact::OPEN;
+}
+
+std::uint8_t toMessage(SolverStatus status)
+{
+  switch (status)
+  {
+    case SolverStatus::CONVERGED:
+      return StepReport::CONVERGED;
+    case SolverStatus::MAX_ITERATIONS:
+      return StepReport::MAX_ITERATIONS;
+    case SolverStatus::TIME_LIMIT:
+      return StepReport::TIME_LIMIT;
+    case SolverStatus::STAGNATED:
+      return StepReport::STAGNATED;
+    case SolverStatus::NUMERICAL_FAILURE:
+      return StepReport::NUMERICAL_FAILURE;
+    case SolverStatus::STOPPED_BY_USER:
+      return StepReport::STOPPED_BY_USER;
+    case SolverStatus::NOT_RUN:
+      break;
+  }
+  return StepReport::NOT_RUN;
+}
+
+}  // namespace
+
+ros::Time toStamp(double seconds)
+{
+  ros::Time stamp;
+  stamp.fromNSec(static_cast<std::uint64_t>(std::llround(seconds * 1e9)));
+  return stamp;
+}
+
+void fillJointState(const Simulator& simulator, const NameTable& names, const ros::Time& stamp,
+                    sensor_msgs::JointState& message)
+{
+  message.header.stamp = stamp;  // no frame: joint coordinates have none
+  const std::size_t count = names.joints.size();
+  if (message.name.size() != count)
+  {
+    message.name.resize(count);
+    message.position.resize(count);
+    message.velocity.resize(count);
+    message.effort.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      message.name[i] = names.joints[i].name;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const JointHandle& joint = names.joints[i];
+    message.position[i] = simulator.position(joint.body)[joint.q_index];
+    message.velocity[i] = simulator.velocity(joint.body)[joint.v_index];
+    message.effort[i] = simulator.effort(joint.body, joint.joint);
+  }
+}
+
+void fillContacts(const Simulator& simulator, const NameTable& names, const ros::Time& stamp, ContactArray& message)
+{
+  fillHeader(stamp, message.header);
+  const std::vector<ContactState>& contacts = simulator.contacts();
+  const double dt = simulator.report().dt;
+  message.contacts.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+  {
+    const ContactState& source = contacts[i];
+    Contact& target = message.contacts[i];
+    target.id = source.id;
+    fillSide(simulator.shape(source.shape_a), names, target.body_a, target.link_a, target.collision_a);
+    fillSide(simulator.shape(source.shape_b), names, target.body_b, target.link_b, target.collision_b);
+    fillPoint(source.position, target.position);
+    fillVector(source.normal, target.normal);
+    target.gap = source.gap;
+    target.friction = source.friction;
+    target.restitution = source.restitution;
+    fillVector(source.impulse / dt, target.force);
+    fillVector(source.impulse, target.impulse);
+    fillVector(source.velocity, target.relative_velocity);
+    target.mode = toMessage(source.mode);
+    target.residual = source.residual;
+    target.cone_margin = source.cone_margin;
+  }
+}
+
+void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message)
+{
+  fillHeader(stamp, message.header);
+  message.step = summary.step;
+  message.dt = summary.dt;
+  message.real_time_factor = real_time_factor;
+  message.contacts = static_cast<std::uint32_t>(summary.contacts);
+  message.velocities = static_cast<std::uint32_t>(summary.velocities);
+  message.bilaterals = static_cast<std::uint32_t>(summary.bilaterals);
+  message.islands = static_cast<std::uint32_t>(summary.islands);
+  message.solver = summary.solver;
+  message.solvers_tried = summary.solvers_tried;
+  message.status = toMessage(summary.status);
+  message.iterations = summary.iterations;
+  message.residual = summary.residual;
+  message.solve_time = summary.solve_time;
+  message.bilateral_violation = summary.bilateral_violation;
+  message.max_penetration = summary.max_penetration;
+  message.existence = StepReport::NOT_CHECKED;
+  message.existence_margin = std::numeric_limits<double>::quiet_NaN();
+  message.uniqueness = StepReport::NOT_CHECKED;
+  message.kinetic = summary.energy.kinetic;
+  message.potential = summary.energy.potential;
+  message.actuators = summary.energy.actuators;
+  message.friction = summary.energy.friction;
+  message.impact = summary.energy.impact;
+  message.joints = summary.energy.joints;
+  message.balance_error = summary.energy.balance_error;
+  message.fclib_file = summary.fclib_file;
+}
+
+void fillOdometry(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
+                  nav_msgs::Odometry& message)
+{
+  fillHeader(stamp, message.header);
+  message.child_frame_id = names.roots[body];
+  const Eigen::Isometry3d& pose = rootPose(simulator, body);
+  fillPoint(pose.translation(), message.pose.pose.position);
+  fillQuaternion(pose.linear(), message.pose.pose.orientation);
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+  if (simulator.model(body).joints.front().type == JointType::FLOATING)
+  {
+    linear = simulator.velocity(body).head<3>();
+    angular = simulator.velocity(body).segment<3>(3);
+  }
+  fillVector(pose.linear().transpose() * linear, message.twist.twist.linear);
+  fillVector(pose.linear().transpose() * angular, message.twist.twist.angular);
+}
+
+void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
+                   geometry_msgs::TransformStamped& message)
+{
+  fillHeader(stamp, message.header);
+  message.child_frame_id = names.roots[body];
+  const Eigen::Isometry3d& pose = rootPose(simulator, body);
+  fillVector(pose.translation(), message.transform.translation);
+  fillQuaternion(pose.linear(), message.transform.rotation);
+}
+
+}  // namespace frictional_contact_sim

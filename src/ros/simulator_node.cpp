@@ -1,0 +1,336 @@
+#include "frictional_contact_sim/ros/simulator_node.h"
+
+#include <ros/callback_queue.h>
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/names.h>
+
+#include <algorithm>
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr int FREE_RUN_WINDOW = 32;  // steps between two looks at the subscribers: DeliveryMonitor
+constexpr int PACED_WINDOW = 1000;  // at a given pace queues stay short by themselves
+constexpr double IDLE_PERIOD = 0.02;  // [s]
+constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
+constexpr double SETTLING_TIME = 0.3;  // between a recorder's subscription and its readiness [s]
+constexpr double COMPLAINT_DELAY = 5.0;  // [s]
+
+double wallSeconds()
+{
+  return ros::WallTime::now().toSec();
+}
+
+void serveCallbacks(double timeout)
+{
+  ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(timeout));
+}
+
+}  // namespace
+
+SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_node, const NodeParameters& parameters)
+  : parameters_(parameters)
+  , simulator_(parameters.scenario)
+  , names_(makeNameTable(simulator_))
+  , publisher_(node, private_node, simulator_, names_, parameters)
+  , delivery_(publisher_.losslessTopics())
+  , pacer_(parameters.real_time_factor)
+  , paused_(parameters.start_paused)
+  , waiting_(!parameters.wait_for_subscribers.empty())
+{
+  for (const std::string& topic : parameters.wait_for_subscribers)
+  {
+    awaited_topics_.push_back(topic.empty() || topic[0] != '~' ? node.resolveName(topic)
+                                                               : private_node.resolveName(topic.substr(1)));
+    publisher_.subscribers(awaited_topics_.back());
+  }
+  for (const std::string& warning : simulator_.warnings())
+  {
+    ROS_WARN_STREAM(warning);
+  }
+  for (const std::string& joint : names_.unsupported_joints)
+  {
+    ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
+  }
+  simulator_.setFailurePolicy(parameters.on_failure);
+  simulator_.setDumpFolder(parameters.dump_dir);
+  setServoGains();
+  advertiseServices(private_node);
+  subscribeCommands(private_node);
+  ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "
+                            << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
+}
+
+/** @brief ~servo_gains for the servos that hold the initial position. */
+void SimulatorNode::setServoGains()
+{
+  for (const auto& gains : parameters_.servo_gains)
+  {
+    if (gains.first != "default" && findJoint(names_, gains.first) < 0)
+    {
+      throw ParameterError("~servo_gains: unknown joint '" + gains.first + "'");
+    }
+  }
+  for (const int index : names_.actuated)
+  {
+    const JointHandle& joint = names_.joints[index];
+    const BodySpec& body = simulator_.scenario().bodies[joint.body];
+    const std::string& urdf_name = simulator_.model(joint.body).joints[joint.joint].name;
+    if (!parameters_.servo_gains.empty() && body.hold_initial_position && body.commands.count(urdf_name) == 0)
+    {
+      const double position = simulator_.position(joint.body)[joint.q_index];
+      simulator_.setCommand(joint.body, joint.joint, positionCommand(position, joint.name, parameters_.servo_gains));
+    }
+  }
+}
+
+void SimulatorNode::advertiseServices(ros::NodeHandle& private_node)
+{
+  const auto empty = [&](const std::string& name, const std::function<void()>& action)
+  {
+    services_.push_back(private_node.advertiseService<std_srvs::Empty::Request, std_srvs::Empty::Response>(
+        name,
+        [action](std_srvs::Empty::Request&, std_srvs::Empty::Response&)
+        {
+          action();
+          return true;
+        }));
+  };
+  const auto pause = [this] { setPaused(true); };
+  const auto unpause = [this] { setPaused(false); };
+  const auto reset = [this] { this->reset(); };
+  empty("pause", pause);
+  empty("unpause", unpause);
+  empty("reset", reset);
+  empty("reset_time", [this] { resetTime(); });
+  // Gazebo's names.
+  empty("pause_physics", pause);
+  empty("unpause_physics", unpause);
+  empty("reset_world", reset);
+  empty("reset_simulation",
+        [this]
+        {
+          this->reset();
+          resetTime();
+        });
+  services_.push_back(private_node.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
+      "set_paused",
+      [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
+      {
+        setPaused(request.data);
+        response.success = true;
+        return true;
+      }));
+  services_.push_back(private_node.advertiseService("step", &SimulatorNode::stepService, this));
+}
+
+void SimulatorNode::subscribeCommands(ros::NodeHandle& private_node)
+{
+  using Array = std_msgs::Float64MultiArray;
+  const auto add = [&](const std::string& topic, JointCommand::Mode mode,
+                       std::vector<double> sensor_msgs::JointState::*field, const std::string& field_name)
+  {
+    subscribers_.push_back(private_node.subscribe<sensor_msgs::JointState>(
+        topic, 10,
+        [this, topic, mode, field, field_name](const sensor_msgs::JointState::ConstPtr& message)
+        { command(topic, mode, [&] { return namedTargets(names_, message->name, (*message).*field, field_name); }); }));
+    const std::string array_topic = topic + "_array";
+    subscribers_.push_back(private_node.subscribe<Array>(
+        array_topic, 10,
+        [this, array_topic, mode](const Array::ConstPtr& message)
+        { command(array_topic, mode, [&] { return orderedTargets(names_, message->data); }); }));
+  };
+  add("command/effort", JointCommand::Mode::EFFORT, &sensor_msgs::JointState::effort, "effort");
+  add("command/position", JointCommand::Mode::POSITION, &sensor_msgs::JointState::position, "position");
+}
+
+void SimulatorNode::command(const std::string& topic, JointCommand::Mode mode,
+                            const std::function<JointTargets()>& targets)
+{
+  try
+  {
+    for (const auto& [index, target] : targets())
+    {
+      const JointHandle& joint = names_.joints[index];
+      JointCommand command = positionCommand(target, joint.name, parameters_.servo_gains);
+      command.mode = mode;
+      simulator_.setCommand(joint.body, joint.joint, command);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    ROS_WARN_STREAM("~" << topic << ": command ignored: " << error.what());
+  }
+}
+
+void SimulatorNode::setPaused(bool paused)
+{
+  paused_ = paused;
+  publisher_.publishClock(simulator_.time() > 0.0 ? simulator_.time() : simulator_.scenario().time_step);
+  pacer_.restart(simulator_.time(), wallSeconds());
+}
+
+void SimulatorNode::reset()
+{
+  simulator_.reset();
+}
+
+void SimulatorNode::resetTime()
+{
+  simulator_.resetTime();
+  pacer_.restart(simulator_.time(), wallSeconds());
+}
+
+bool SimulatorNode::stepService(Step::Request& request, Step::Response& response)
+{
+  response.success = false;
+  if (!paused_ || waiting_)
+  {
+    response.message = waiting_ ? "waiting for subscribers" : "the simulation runs: pause it first";
+  }
+  else if (request.n == 0)
+  {
+    response.message = "n: found 0, expected at least 1";
+  }
+  else
+  {
+    std::uint32_t done = 0;
+    Outcome outcome = Outcome::GO_ON;
+    while (done < request.n && outcome == Outcome::GO_ON && ros::ok())
+    {
+      outcome = advance();
+      ++done;
+    }
+    response.success = done == request.n && outcome != Outcome::FAILED && outcome != Outcome::PAUSED;
+    if (!response.success)
+    {
+      response.message = "stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps";
+    }
+    outcome_ = outcome == Outcome::PAUSED ? Outcome::GO_ON : outcome;
+    response.report = publisher_.report(pacer_.realTimeFactor());
+  }
+  return true;
+}
+
+SimulatorNode::Outcome SimulatorNode::judge(const StepSummary& summary)
+{
+  if (summary.status != SolverStatus::CONVERGED)
+  {
+    ROS_WARN_STREAM("step " << summary.step << ": " << toString(summary.status) << " after " << summary.iterations
+                            << " iterations, residual " << summary.residual
+                            << (summary.fclib_file.empty() ? "" : ", problem in " + summary.fclib_file));
+    if (parameters_.on_failure == FailurePolicy::STOP)
+    {
+      return Outcome::FAILED;
+    }
+    if (parameters_.on_failure == FailurePolicy::PAUSE)
+    {
+      setPaused(true);
+      return Outcome::PAUSED;
+    }
+  }
+  const bool finished = parameters_.num_steps > 0 && steps_done_ >= parameters_.num_steps;
+  return finished ? Outcome::FINISHED : Outcome::GO_ON;
+}
+
+/** @brief One step, its messages, and whatever keeps them from being lost. */
+SimulatorNode::Outcome SimulatorNode::advance()
+{
+  const StepSummary& summary = simulator_.step();
+  ++steps_done_;
+  pacer_.measure(simulator_.time(), wallSeconds());
+  publisher_.publish(pacer_.realTimeFactor());
+  const bool free_run = parameters_.real_time_factor <= 0.0 || paused_;
+  if (steps_done_ % (free_run ? FREE_RUN_WINDOW : PACED_WINDOW) == 0)
+  {
+    holdForSubscribers();
+  }
+  return judge(summary);
+}
+
+/** @brief Full queues hold the run, they never drop. */
+void SimulatorNode::holdForSubscribers()
+{
+  const double start = wallSeconds();
+  bool complained = false;
+  std::string laggard = delivery_.laggard();
+  while (ros::ok() && !laggard.empty())
+  {
+    if (!complained && wallSeconds() - start > COMPLAINT_DELAY)
+    {
+      ROS_WARN_STREAM("the run waits for " << laggard << ", which does not read what it subscribed to");
+      complained = true;
+    }
+    ros::WallDuration(0.0005).sleep();
+    laggard = delivery_.laggard();
+  }
+}
+
+bool SimulatorNode::subscribersStand()
+{
+  const auto stands = [this](const std::string& topic) { return publisher_.subscribers(topic) > 0; };
+  return std::all_of(awaited_topics_.begin(), awaited_topics_.end(), stands);
+}
+
+/** @brief Nothing to step: serve callbacks, and give the time to those who come now. */
+void SimulatorNode::idle()
+{
+  const double due = wallSeconds() + CLOCK_PERIOD;
+  // Time zero means "no clock yet" to ROS: before the first step it is the time of that step.
+  publisher_.publishClock(simulator_.time() > 0.0 ? simulator_.time() : simulator_.scenario().time_step);
+  while (ros::ok() && (paused_ || waiting_) && outcome_ == Outcome::GO_ON && wallSeconds() < due)
+  {
+    serveCallbacks(IDLE_PERIOD);
+    if (waiting_ && subscribersStand())
+    {
+      ros::WallDuration(SETTLING_TIME).sleep();
+      waiting_ = false;
+    }
+  }
+  pacer_.restart(simulator_.time(), wallSeconds());
+}
+
+void SimulatorNode::runStep()
+{
+  outcome_ = advance();
+  if (outcome_ == Outcome::PAUSED)
+  {
+    outcome_ = Outcome::GO_ON;
+  }
+  double wait = pacer_.wait(simulator_.time(), wallSeconds());
+  serveCallbacks(0.0);
+  while (ros::ok() && wait > 0.0 && !paused_)
+  {
+    serveCallbacks(std::min(wait, IDLE_PERIOD));
+    wait = pacer_.wait(simulator_.time(), wallSeconds());
+  }
+}
+
+int SimulatorNode::run()
+{
+  pacer_.restart(simulator_.time(), wallSeconds());
+  while (ros::ok() && outcome_ == Outcome::GO_ON)
+  {
+    if (paused_ || waiting_)
+    {
+      idle();
+    }
+    else
+    {
+      runStep();
+    }
+  }
+  if (outcome_ != Outcome::GO_ON)
+  {
+    holdForSubscribers();  // the last messages, before the connections close
+  }
+  for (const auto& [subscriber, count] : delivery_.dropped())
+  {
+    ROS_WARN_STREAM(subscriber << ": the subscriber dropped " << count << " messages");
+  }
+  return outcome_ == Outcome::FAILED ? 1 : 0;
+}
+
+}  // namespace frictional_contact_sim
