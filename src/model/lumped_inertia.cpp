@@ -121,6 +121,10 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
       continue;
     }
     const Body& body = model.bodies[i];
+    if (!body.inertia.rotational.allFinite() || !body.inertia.center.allFinite() || !std::isfinite(body.inertia.mass))
+    {
+      failAt(source, 0, "link '" + body.name + "' (with the links fixed to it): mass or inertia overflows");
+    }
     const Eigen::Vector3d moments = principalMoments(body.inertia);
     const double round_off = 1e-12 * moments.cwiseAbs().maxCoeff();
     if (moments[0] < -round_off)

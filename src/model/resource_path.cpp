@@ -40,10 +40,15 @@ std::string findPackage(const std::string& name)
   std::vector<std::string> search_path;
   if (rospack.getSearchPathFromEnv(search_path))
   {
+    // rospack's cache file first; it may be a minute old, so a package it does not know is looked for on the disk.
     rospack.crawl(search_path, false);
     if (!rospack.find(name, folder))
     {
-      folder.clear();
+      rospack.crawl(search_path, true);
+      if (!rospack.find(name, folder))
+      {
+        folder.clear();
+      }
     }
   }
   return folder;

@@ -2,6 +2,13 @@
 /**
  * @file urdf_loader.h
  * @brief URDF (urdfdom) to MultibodyModel.
+ *
+ * Links joined by fixed joints become one body named after its first link; every link stays a Frame. Bodies come depth
+ * first, joints in the order of the document (so joint_states keep that order). A capsule's length is that of its
+ * cylindrical part. Gazebo's mu1 is read where mu2 is absent or equal.
+ * Inertia is judged after lumping: a moving body needs mass and three positive principal moments, or what it carries
+ * must keep the mass matrix positive definite (then it is named in a warning). The body of a fixed base needs none.
+ * Visuals are not read: their meshes may be missing.
  */
 #include <stdexcept>
 #include <string>
