@@ -131,6 +131,17 @@ Eigen::Vector3d StepAssembly::baseVelocity(const ShapeInfo& shape, const Eigen::
   return robot.base_motion.linear + robot.base_motion.angular.cross(arm);
 }
 
+/** False when no coordinate moves the contact along its normal: then no normal force is determined, nor is any needed.
+ */
+bool StepAssembly::movesAlong(const Eigen::Vector3d& normal) const
+{
+  for (const auto* columns : {&columns_a_, &columns_b_})
+    for (const auto& [column, motion] : *columns)
+      if (std::abs(normal.dot(motion)) > 1e-12 * motion.norm())
+        return true;
+  return false;
+}
+
 void StepAssembly::addContact(const ContactPoint& point, int index, const StepSettings* settings)
 {
   const ShapeInfo& shape_a = world_.shape(point.shape_a);
@@ -157,7 +168,7 @@ void StepAssembly::addContact(const ContactPoint& point, int index, const StepSe
   const NormalShift shift =
       settings != nullptr ? normalShift(settings->normal_law, point.gap, old_normal, material.restitution, settings->dt)
                           : impactShift(point.gap, old_normal, material.restitution);
-  if (!shift.active)
+  if (!shift.active || !movesAlong(point.normal))
     return;
   contact.friction = material.friction;
   contact.restitution = material.restitution;

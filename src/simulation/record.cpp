@@ -137,8 +137,11 @@ void Simulator::Impl::dumpProblem()
   report.fclib_file = dump_folder + "/" + scenario.name + "_step_" + std::to_string(report.step + 1) + ".hdf5";
   try
   {
-    writeFclib(report.fclib_file, assembly.problem(), scenario.name + " step " + std::to_string(report.step + 1),
-               "w contains the shift of the normal law (gap/dt, restitution)");
+    FclibInfo info;
+    info.title = scenario.name + " step " + std::to_string(report.step + 1);
+    info.description = "w contains the shift of the normal law (gap/dt, restitution); bounded servos and dry joint "
+                       "friction are encoded as problem/fclib.h says";
+    writeFclib(report.fclib_file, assembly.problem(), info);
   }
   catch (const std::exception& error)
   {

@@ -1,6 +1,7 @@
 // One time step, in the order of DESIGN.md.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
@@ -101,7 +102,16 @@ void Simulator::Impl::solveStep(const std::vector<ContactPoint>& points)
 
 void Simulator::Impl::solve()
 {
-  solver->solve(assembly.problem(), &guess, result);
+  // A state that has run away (after accepted failures) overflows here; it must not reach the solver as a NaN.
+  if (assembly.problem().f.allFinite() && assembly.problem().w.allFinite())
+    solver->solve(assembly.problem(), &guess, result);
+  else
+  {
+    result.status = SolverStatus::NUMERICAL_FAILURE;
+    result.residual = 1.0;
+    result.solution.v.setConstant(assembly.problem().velocities(), std::numeric_limits<double>::quiet_NaN());
+    result.solution.r.setZero(assembly.problem().rows());
+  }
   step_failed = result.status != SolverStatus::CONVERGED;
 }
 

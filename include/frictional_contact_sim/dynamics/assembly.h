@@ -86,6 +86,7 @@ private:
   void collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
                       std::vector<std::pair<int, Eigen::Vector3d>>& columns) const;
   Eigen::Vector3d baseVelocity(const ShapeInfo& shape, const Eigen::Vector3d& position) const;
+  bool movesAlong(const Eigen::Vector3d& normal) const;
   void assembleMass(bool with_implicit);
 
   std::vector<Robot>& robots_;
