@@ -1,0 +1,323 @@
+#include "frictional_contact_sim/problem/fclib.h"
+
+#include "fclib_check.h"
+#include "fclib_encoding.h"
+
+// The header forgets to say that it is C.
+extern "C"
+{
+#include <fclib.h>
+}
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+namespace frictional_contact_sim
+{
+namespace
+{
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// |M_ij - M_ji| allowed, relative to sqrt(M_ii M_jj): text formats on the way keep 6 digits and more.
+constexpr double SYMMETRY_TOLERANCE = 1e-6;
+
+/** Triplets of a stored matrix, shifted by a row and a column offset, transposed on demand. */
+void appendTriplets(const fclib_matrix& matrix, bool transpose, int row_offset, int column_offset, Triplets& triplets)
+{
+  const auto add = [&](int row, int column, double value)
+  {
+    if (transpose)
+      triplets.emplace_back(row_offset + column, column_offset + row, value);
+    else
+      triplets.emplace_back(row_offset + row, column_offset + column, value);
+  };
+  if (matrix.nz >= 0)
+  {
+    for (int k = 0; k < matrix.nz; ++k)
+      add(matrix.i[k], matrix.p[k], matrix.x[k]);
+    return;
+  }
+  const int outer = matrix.nz == -1 ? matrix.n : matrix.m;
+  for (int k = 0; k < outer; ++k)
+    for (int entry = matrix.p[k]; entry < matrix.p[k + 1]; ++entry)
+    {
+      if (matrix.nz == -1)
+        add(matrix.i[entry], k, matrix.x[entry]);
+      else
+        add(k, matrix.i[entry], matrix.x[entry]);
+    }
+}
+
+SparseRows fromTriplets(int rows, int columns, const Triplets& triplets)
+{
+  SparseRows result(rows, columns);
+  result.setFromTriplets(triplets.begin(), triplets.end());
+  result.makeCompressed();
+  return result;
+}
+
+SparseRows toRows(const fclib_matrix* matrix, bool transpose)
+{
+  Triplets triplets;
+  appendTriplets(*matrix, transpose, 0, 0, triplets);
+  return transpose ? fromTriplets(matrix->n, matrix->m, triplets) : fromTriplets(matrix->m, matrix->n, triplets);
+}
+
+Eigen::VectorXd toVector(const double* values, int count)
+{
+  if (count == 0)
+    return Eigen::VectorXd();
+  return Eigen::Map<const Eigen::VectorXd>(values, count);
+}
+
+FclibInfo toInfo(const fclib_info* info)
+{
+  FclibInfo result;
+  if (info == nullptr)
+    return result;
+  const auto text = [](const char* value) { return std::string(value == nullptr ? "" : value); };
+  result.title = text(info->title);
+  result.description = text(info->description);
+  result.math_info = text(info->math_info);
+  return result;
+}
+
+std::vector<Law> coulombLaws(int dimension, int contacts, const double* mu)
+{
+  std::vector<Law> laws(static_cast<std::size_t>(contacts));
+  for (int i = 0; i < contacts; ++i)
+    laws[static_cast<std::size_t>(i)] = {dimension == 3 ? LawType::COULOMB_3D : LawType::COULOMB_2D, mu[i]};
+  return laws;
+}
+
+/**
+ * Makes M exactly symmetric. Finite element codes dump one triangle of a symmetric matrix: the other one is then
+ * mirrored. Otherwise both must agree up to round-off.
+ */
+void symmetrise(const std::string& path, SparseRows& M)
+{
+  bool lower = false;
+  bool upper = false;
+  for (int row = 0; row < M.rows(); ++row)
+    for (SparseRows::InnerIterator entry(M, row); entry; ++entry)
+    {
+      lower = lower || (entry.col() < row && entry.value() != 0.0);
+      upper = upper || (entry.col() > row && entry.value() != 0.0);
+    }
+  const SparseRows transposed = M.transpose();
+  if (lower != upper)
+  {
+    const Eigen::VectorXd diagonal = M.diagonal();
+    M = SparseRows(M + transposed);
+    M.diagonal() = diagonal;
+    M.makeCompressed();
+    return;
+  }
+  const Eigen::VectorXd root = M.diagonal().cwiseAbs().cwiseSqrt();
+  const SparseRows difference = M - transposed;
+  for (int row = 0; row < M.rows(); ++row)
+    for (SparseRows::InnerIterator entry(difference, row); entry; ++entry)
+      if (std::abs(entry.value()) > SYMMETRY_TOLERANCE * root[row] * root[entry.col()])
+        throw std::runtime_error(path + ": M(" + std::to_string(row) + ", " + std::to_string(entry.col()) +
+                                 ") differs from its mirror image by " + std::to_string(entry.value()) +
+                                 ", expected a symmetric matrix or one triangle of it");
+  M = SparseRows(0.5 * (M + transposed));
+  M.makeCompressed();
+}
+
+void readGlobal(const std::string& path, const FclibShape& shape, FclibProblem& result)
+{
+  const std::unique_ptr<fclib_global, void (*)(fclib_global*)> stored(fclib_read_global(path.c_str()),
+                                                                      fclib_delete_global);
+  if (!stored)
+    throw std::runtime_error(path + ": libfclib could not read the global problem");
+  IncrementalProblem& problem = result.global;
+  problem.M = toRows(stored->M, false);
+  symmetrise(path, problem.M);
+  problem.f = -toVector(stored->f, shape.velocities);
+  problem.H = toRows(stored->H, true);
+  problem.w = toVector(stored->w, shape.rows);
+  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, stored->mu);
+  if (shape.bilaterals > 0)
+  {
+    problem.G = toRows(stored->G, true);
+    problem.b = toVector(stored->b, shape.bilaterals);
+  }
+  else
+    problem.G.resize(0, shape.velocities);
+  result.info = toInfo(stored->info);
+  validate(problem);
+}
+
+void readLocal(const std::string& path, const FclibShape& shape, FclibProblem& result)
+{
+  const std::unique_ptr<fclib_local, void (*)(fclib_local*)> stored(fclib_read_local(path.c_str()), fclib_delete_local);
+  if (!stored)
+    throw std::runtime_error(path + ": libfclib could not read the local problem");
+  DelassusProblem& problem = result.local;
+  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, stored->mu);
+  problem.laws.resize(problem.laws.size() + static_cast<std::size_t>(shape.bilaterals), {LawType::BILATERAL, 0.0});
+  const int size = shape.rows + shape.bilaterals;
+  Triplets triplets;
+  appendTriplets(*stored->W, false, 0, 0, triplets);
+  problem.q.resize(size);
+  problem.q.head(shape.rows) = toVector(stored->q, shape.rows);
+  if (shape.bilaterals > 0)
+  {
+    appendTriplets(*stored->V, false, 0, shape.rows, triplets);
+    appendTriplets(*stored->V, true, shape.rows, 0, triplets);
+    appendTriplets(*stored->R, false, shape.rows, shape.rows, triplets);
+    problem.q.tail(shape.bilaterals) = toVector(stored->s, shape.bilaterals);
+  }
+  problem.W.assign(fromTriplets(size, size, triplets), problem.laws);
+  result.info = toInfo(stored->info);
+  validate(problem);
+}
+
+/** Compressed rows handed to libfclib; keeps the arrays alive. */
+class StoredMatrix
+{
+public:
+  explicit StoredMatrix(SparseRows matrix) : values_(std::move(matrix))
+  {
+    values_.makeCompressed();
+    matrix_.nzmax = static_cast<int>(values_.nonZeros());
+    matrix_.m = static_cast<int>(values_.rows());
+    matrix_.n = static_cast<int>(values_.cols());
+    matrix_.p = values_.outerIndexPtr();
+    matrix_.i = values_.innerIndexPtr();
+    matrix_.x = values_.valuePtr();
+    matrix_.nz = -2;
+    matrix_.info = nullptr;
+  }
+  StoredMatrix(const StoredMatrix&) = delete;
+  StoredMatrix& operator=(const StoredMatrix&) = delete;
+  fclib_matrix* get() { return &matrix_; }
+
+private:
+  SparseRows values_;
+  fclib_matrix matrix_{};
+};
+
+/** Writes beside the target and renames, so that a failure leaves no half file and an old solution never survives. */
+template <typename Write>
+void writeBeside(const std::string& path, Write write)
+{
+  const H5Silence silence;
+  const std::string temporary = path + ".part";
+  if (!std::ofstream(temporary))
+    throw std::runtime_error(path + ": cannot be written, expected a writable place");
+  std::filesystem::remove(temporary);
+  if (!write(temporary))
+  {
+    std::filesystem::remove(temporary);
+    throw std::runtime_error(path + ": libfclib could not write it");
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+class StoredInfo
+{
+public:
+  explicit StoredInfo(const FclibInfo& info) : copy_(info)
+  {
+    info_.title = copy_.title.data();
+    info_.description = copy_.description.data();
+    info_.math_info = copy_.math_info.data();
+  }
+  fclib_info* get() { return &info_; }
+
+private:
+  FclibInfo copy_;
+  fclib_info info_{};
+};
+
+/** True when the solution was stored or none was given. */
+bool writeSolution(const std::string& path, EncodedSolution* solution)
+{
+  if (solution == nullptr)
+    return true;
+  fclib_solution stored{};
+  stored.v = solution->v.data();
+  stored.u = solution->u.data();
+  stored.r = solution->r.data();
+  stored.l = solution->lambda.data();
+  return fclib_write_solution(&stored, path.c_str()) == 1;
+}
+}  // namespace
+
+FclibProblem readFclib(const std::string& path)
+{
+  const H5Silence silence;
+  const FclibShape shape = checkFclib(path);
+  FclibProblem result;
+  result.kind = shape.kind;
+  result.dimension = shape.dimension;
+  result.contacts = shape.rows / shape.dimension;
+  if (shape.kind == FclibKind::GLOBAL)
+    readGlobal(path, shape, result);
+  else
+    readLocal(path, shape, result);
+  if (shape.has_solution)
+    result.solution = readSolutionGroup(path, "/solution", shape);
+  for (int k = 1; k <= shape.guesses; ++k)
+    result.guesses.push_back(readSolutionGroup(path, "/guesses/" + std::to_string(k), shape));
+  return result;
+}
+
+void writeFclib(const std::string& path, const IncrementalProblem& problem, const FclibInfo& info,
+                const Solution* solution)
+{
+  validate(problem);
+  EncodedGlobal encoded = encodeGlobal(problem, solution);
+  StoredMatrix M(encoded.problem.M), H(encoded.problem.H.transpose()), G(encoded.problem.G.transpose());
+  StoredInfo texts(info);
+  Eigen::VectorXd f = -encoded.problem.f;
+  fclib_global stored{};
+  stored.M = M.get();
+  stored.H = H.get();
+  stored.G = encoded.problem.bilaterals() > 0 ? G.get() : nullptr;
+  stored.mu = encoded.friction.data();
+  stored.f = f.data();
+  stored.b = encoded.problem.b.data();
+  stored.w = encoded.problem.w.data();
+  stored.spacedim = encoded.dimension;
+  stored.info = texts.get();
+  writeBeside(path,
+              [&](const std::string& temporary)
+              {
+                return fclib_write_global(&stored, temporary.c_str()) == 1 &&
+                       writeSolution(temporary, solution == nullptr ? nullptr : &encoded.solution);
+              });
+}
+
+void writeFclib(const std::string& path, const DelassusProblem& problem, const FclibInfo& info,
+                const Solution* solution)
+{
+  validate(problem);
+  EncodedLocal encoded = encodeLocal(problem, solution);
+  StoredMatrix W(encoded.W), V(encoded.V), R(encoded.R);
+  StoredInfo texts(info);
+  const bool bilateral = encoded.s.size() > 0;
+  fclib_local stored{};
+  stored.W = W.get();
+  stored.V = bilateral ? V.get() : nullptr;
+  stored.R = bilateral ? R.get() : nullptr;
+  stored.mu = encoded.friction.data();
+  stored.q = encoded.q.data();
+  stored.s = encoded.s.data();
+  stored.spacedim = encoded.dimension;
+  stored.info = texts.get();
+  writeBeside(path,
+              [&](const std::string& temporary)
+              {
+                return fclib_write_local(&stored, temporary.c_str()) == 1 &&
+                       writeSolution(temporary, solution == nullptr ? nullptr : &encoded.solution);
+              });
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,65 @@
+#pragma once
+/**
+ * @file fclib_check.h
+ * @brief Structure check of an FCLib file through the HDF5 library, and plain reading of its vectors. Internal.
+ */
+#include <hdf5.h>
+
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/problem/fclib.h"
+
+namespace frictional_contact_sim
+{
+/** @brief Closes an HDF5 identifier at the end of its scope. */
+class H5Handle
+{
+public:
+  H5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~H5Handle()
+  {
+    if (id_ >= 0)
+      close_(id_);
+  }
+  H5Handle(const H5Handle&) = delete;
+  H5Handle& operator=(const H5Handle&) = delete;
+  hid_t id() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+
+private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/** @brief Silences HDF5's own printing while it lives. */
+class H5Silence
+{
+public:
+  H5Silence();
+  ~H5Silence();
+  H5Silence(const H5Silence&) = delete;
+  H5Silence& operator=(const H5Silence&) = delete;
+
+private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/** @brief Sizes a checked file is known to have. */
+struct FclibShape
+{
+  FclibKind kind = FclibKind::LOCAL;
+  int dimension = 3;
+  int velocities = 0, rows = 0, bilaterals = 0;
+  bool has_solution = false;
+  int guesses = 0;
+};
+
+/** @brief Checks everything libfclib relies on. @throws std::runtime_error in one line. */
+FclibShape checkFclib(const std::string& path);
+
+/** @brief Reads the vectors of a solution group of a checked file; missing ones stay empty. */
+Solution readSolutionGroup(const std::string& path, const std::string& group, const FclibShape& shape);
+
+}  // namespace frictional_contact_sim
