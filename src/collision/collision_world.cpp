@@ -47,6 +47,7 @@ struct CollisionWorld::Impl
   std::vector<Robot> robots;
   BroadPhase broad_phase;
   bool are_pairs_current = false;
+  std::size_t most_vertices = 0;
   std::unique_ptr<Manifold> manifold = std::make_unique<Manifold>();
   std::vector<ContactPoint> contacts;
 
@@ -56,6 +57,8 @@ struct CollisionWorld::Impl
     {
       throw std::invalid_argument("collision: more than " + std::to_string(MAX_SHAPES) + " shapes");
     }
+    most_vertices = std::max(most_vertices, instance.shape.core.vertices.size());
+    manifold->reserve(2 * most_vertices);
     instances.push_back(std::move(instance));
     infos.push_back(std::move(info));
     bounds.emplace_back();

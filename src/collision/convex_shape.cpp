@@ -59,6 +59,7 @@ struct ShapeMaker
     shape.kind = ShapeKind::CYLINDER;
     shape.radius = cylinder.radius;
     shape.half_length = cylinder.half_length;
+    shape.core = segmentPolyhedron(cylinder.half_length);
     shape.half_extent << cylinder.radius, cylinder.radius, cylinder.half_length;
     shape.bounding_radius = std::hypot(cylinder.radius, cylinder.half_length);
     return shape;

@@ -22,7 +22,7 @@ void addPoint(const Eigen::Vector3d& surface_point, double margin, Feature featu
   const double gap = surface_point.z();
   if (gap <= margin)
   {
-    manifold.add({surface_point.x(), surface_point.y(), 0.5 * gap}, Eigen::Vector3d::UnitZ(), gap, feature, PLANE);
+    manifold.add({{surface_point.x(), surface_point.y(), 0.5 * gap}, Eigen::Vector3d::UnitZ(), gap, feature, PLANE});
   }
 }
 
@@ -49,11 +49,10 @@ void roundedOnPlane(const ConvexShape& shape, const Eigen::Isometry3d& pose, dou
 {
   const Eigen::Vector3d up = pose.linear().row(2).transpose();
   const double height = pose.translation().z() - shape.radius;
-  int count = 0;
   for (std::size_t v = 0; v < shape.core.vertices.size(); ++v)
   {
     const double gap = up.dot(shape.core.vertices[v]) + height;
-    if (gap <= margin && count++ < Manifold::CAPACITY)
+    if (gap <= margin)
     {
       Eigen::Vector3d point = pose * shape.core.vertices[v];
       point.z() = gap;

@@ -12,6 +12,17 @@ constexpr double TOUCHING = 1e-6;  // times the size: the same depth as the deep
 constexpr double SAME_GAP = 1e-9;  // times the size: ties go to the earlier point
 }  // namespace
 
+void Manifold::reserve(std::size_t vertices)
+{
+  const std::size_t room = vertices + 64;
+  points.resize(std::max(points.size(), room));
+  is_kept.reserve(room);
+  polygon.reserve(room);
+  clipped.reserve(room);
+  corners.reserve(room);
+  side_normals.reserve(room);
+}
+
 void sortManifold(Manifold& manifold)
 {
   const auto key = [](const PairContact& point) { return (point.feature_a << 16) | point.feature_b; };
@@ -30,8 +41,8 @@ void reduceManifold(const Eigen::Matrix<double, 3, 2>& tangents, double size, Ma
   {
     return;
   }
-  std::array<bool, Manifold::CAPACITY> is_kept;
-  is_kept.fill(false);
+  std::vector<char>& is_kept = manifold.is_kept;
+  is_kept.assign(manifold.count, 0);
   double deepest = manifold.points[0].gap;
   for (int i = 1; i < manifold.count; ++i)
   {
@@ -49,7 +60,7 @@ void reduceManifold(const Eigen::Matrix<double, 3, 2>& tangents, double size, Ma
   {
     if (i >= 0 && !is_kept[i] && kept_count < MAX_PAIR_POINTS)
     {
-      is_kept[i] = true;
+      is_kept[i] = 1;
       ++kept_count;
     }
   };

@@ -72,13 +72,14 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
       // Newell's normal, about a corner for accuracy: the area-weighted mean over the polygon
       normal += (polyhedron.vertices[v0] - origin).cross(polyhedron.vertices[v1] - origin);
     }
+    const double area = 0.5 * normal.norm();
     normal.normalize();
     double offset = normal.dot(origin);
     for (int vertex : loop)
     {
       offset = std::max(offset, normal.dot(polyhedron.vertices[vertex]));
     }
-    polyhedron.faces.push_back({normal, offset, first, static_cast<int>(size)});
+    polyhedron.faces.push_back({normal, offset, first, static_cast<int>(size), area});
   }
   setBounds(polyhedron);
   setNeighbours(polyhedron);

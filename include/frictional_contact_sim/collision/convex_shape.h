@@ -4,7 +4,7 @@
  * @brief A collision shape made ready for the narrow phase: a convex core and a radius around it.
  *
  * sphere = point + radius, capsule = segment + radius, box and hull = polyhedron + 0; the cylinder is its own core
- * (axis z, flat discs); the half space z <= 0 is the only unbounded shape.
+ * (axis z, flat discs; the polyhedron holds its axis); the half space z <= 0 is the only unbounded shape.
  */
 #include <Eigen/Core>
 
@@ -28,7 +28,7 @@ struct ConvexShape
   ShapeKind kind = ShapeKind::SPHERE;
   double radius = 0.0;  ///< around the core; of the discs for a cylinder [m]
   double half_length = 0.0;  ///< capsule (core) and cylinder [m]
-  Polyhedron core;  ///< empty for cylinder and half space
+  Polyhedron core;  ///< empty for the half space
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the bounding box, shape frame [m]
   Eigen::Vector3d half_extent = Eigen::Vector3d::Zero();  ///< of the bounding box, shape frame [m]
   double bounding_radius = 0.0;  ///< of the sphere about center [m]

@@ -8,8 +8,8 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "frictional_contact_sim/collision/convex_shape.h"
 
@@ -40,20 +40,35 @@ struct PairContact
   Feature feature_b = 0;
 };
 
-/** @brief Candidates of one pair; reduced to MAX_PAIR_POINTS at the end. */
+/** @brief A corner of a polygon that is being clipped. */
+struct ClipPoint
+{
+  Eigen::Vector3d position;
+  Feature incident;  ///< on the shape whose face is clipped
+  Feature reference;  ///< on the shape it is clipped against
+  int edge;  ///< towards the next corner: edge of the incident shape, or -1 - k for side k of the reference
+};
+
+/** @brief Candidates of one pair, reduced to MAX_PAIR_POINTS at the end, and workspace: grows, never shrinks. */
 struct Manifold
 {
-  static constexpr int CAPACITY = 512;
-  std::array<PairContact, CAPACITY> points;
+  std::vector<PairContact> points = std::vector<PairContact>(64);
   int count = 0;
+  std::vector<char> is_kept;
+  std::vector<ClipPoint> polygon;
+  std::vector<ClipPoint> clipped;
+  std::vector<Eigen::Vector3d> corners;  ///< of the reference face
+  std::vector<Eigen::Vector3d> side_normals;  ///< outwards, in the plane of the reference face
 
-  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, double gap, Feature feature_a,
-           Feature feature_b)
+  /** @brief Room for shapes with up to this many vertices, so that no later call allocates. */
+  void reserve(std::size_t vertices);
+  void add(const PairContact& point)
   {
-    if (count < CAPACITY)
+    if (count == static_cast<int>(points.size()))
     {
-      points[count++] = {position, normal, gap, feature_a, feature_b};
+      points.resize(2 * points.size());
     }
+    points[count++] = point;
   }
 };
 

@@ -22,6 +22,7 @@ struct Polyhedron
     double offset;  ///< normal . x <= offset for all points [m]
     int first;  ///< position of its loop in face_vertices and face_edges
     int size;  ///< number of corners
+    double area;  ///< [m^2]
   };
   struct Edge
   {
