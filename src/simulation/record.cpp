@@ -90,7 +90,11 @@ void Simulator::Impl::storeReport()
   report.solver = result.solver;
   report.solvers_tried.clear();
   for (const std::string& name : result.tried)
-    report.solvers_tried += (report.solvers_tried.empty() ? "" : ",") + name;
+  {
+    if (!report.solvers_tried.empty())
+      report.solvers_tried += ',';
+    report.solvers_tried += name;
+  }
   report.status = result.status;
   report.iterations = result.iterations;
   report.residual = result.residual;
@@ -139,8 +143,9 @@ void Simulator::Impl::dumpProblem()
   {
     FclibInfo info;
     info.title = scenario.name + " step " + std::to_string(report.step + 1);
-    info.description = "w contains the shift of the normal law (gap/dt, restitution); bounded servos and dry joint "
-                       "friction are encoded as problem/fclib.h says";
+    info.description =
+        "w contains the shift of the normal law (gap/dt, restitution); bounded servos and dry joint "
+        "friction are encoded as problem/fclib.h says";
     writeFclib(report.fclib_file, assembly.problem(), info);
   }
   catch (const std::exception& error)

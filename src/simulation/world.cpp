@@ -133,6 +133,11 @@ Robot loadRobot(const BodySpec& spec, std::vector<std::string>& warnings)
   for (const std::string& warning : loaded.warnings)
     warnings.push_back("body '" + spec.name + "': " + warning);
   Robot robot(std::move(loaded.model));
+  const auto limited = std::count_if(robot.model.joints.begin(), robot.model.joints.end(),
+                                     [](const Joint& joint) { return std::isfinite(joint.limit.velocity); });
+  if (limited > 0)
+    warnings.push_back("body '" + spec.name + "': velocity limits of joints are not enforced (" +
+                       std::to_string(limited) + " joints)");
   robot.name = spec.name;
   setInitialJoints(spec, robot, warnings);
   setInitialBase(spec, robot);

@@ -1,0 +1,105 @@
+// Real robots under position servos, ours and, where ../shared has them, published ones.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "frictional_contact_sim/simulation/simulator.h"
+#include "scene.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+const std::string SHARED_ROBOTS = std::string(PROJECT_DIR) + "/../shared/robots";
+const std::string COLLECTION = SHARED_ROBOTS + "/example-robot-data/robots/";
+
+struct RobotCase
+{
+  const char* name;
+  std::string path;
+  BaseType base;
+  bool hold;
+  bool ground;
+};
+
+class RobotTest : public testing::TestWithParam<RobotCase>
+{
+};
+
+double weight(const Simulator& simulator)
+{
+  return simulator.model(0).totalMass() * simulator.scenario().gravity.norm();
+}
+
+double supportForce(const Simulator& simulator)
+{
+  double force = 0.0;
+  for (const ContactState& contact : simulator.contacts())
+    if (simulator.shape(contact.shape_b).robot < 0)
+      force += contact.impulse.z() / simulator.report().dt;
+  return force;
+}
+
+TEST_P(RobotTest, RunsTwoSecondsWithoutAFailedStep)
+{
+  const RobotCase& robot = GetParam();
+  if (!std::filesystem::exists(robot.path))
+  {
+    std::cout << "no " << robot.path << ": published robots are tested only where ../shared is there\n";
+    GTEST_SKIP();
+  }
+  setenv("ROS_PACKAGE_PATH", SHARED_ROBOTS.c_str(), 1);
+  Scenario scene = groundScene(0.8);
+  scene.stopping.tolerance = 1e-8;
+  if (!robot.ground)
+    scene.ground.reset();
+  BodySpec body;
+  body.name = robot.name;
+  body.urdf_path = robot.path;
+  body.base = robot.base;
+  body.hold_initial_position = robot.hold;
+  scene.bodies.push_back(body);
+  Simulator simulator(scene);
+  double speed = 0.0;
+  double worst_force = 0.0;
+  for (int i = 0; i < 2000; ++i)
+  {
+    const StepSummary& report = simulator.step();
+    ASSERT_EQ(report.status, SolverStatus::CONVERGED) << "step " << i << ", residual " << report.residual;
+    ASSERT_LE(report.residual, 1e-8);
+    ASSERT_LE(report.max_penetration, 1e-4) << "step " << i;
+    ASSERT_TRUE(simulator.position(0).allFinite() && simulator.velocity(0).allFinite());
+    if (i < 1500)
+      continue;
+    speed = std::max(speed, simulator.velocity(0).norm());
+    if (robot.hold && robot.ground)
+      worst_force = std::max(worst_force, std::abs(supportForce(simulator) / weight(simulator) - 1.0));
+  }
+  if (!robot.hold)
+    return;
+  EXPECT_LT(speed, 1e-4);
+  EXPECT_LT(simulator.report().max_penetration, 1e-6);
+  EXPECT_LT(worst_force, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Published, RobotTest,
+    testing::Values(RobotCase{"anymal", COLLECTION + "anymal_b_simple_description/robots/anymal.urdf",
+                              BaseType::FLOATING, true, true},
+                    RobotCase{"go1", COLLECTION + "go1_description/urdf/go1.urdf", BaseType::FLOATING, true, true},
+                    RobotCase{"solo12", COLLECTION + "solo_description/robots/solo12.urdf", BaseType::FLOATING, true,
+                              true},
+                    RobotCase{"panda", COLLECTION + "panda_description/urdf/panda.urdf", BaseType::FIXED, true, false},
+                    RobotCase{"panda_collision", COLLECTION + "panda_description/urdf/panda_collision.urdf",
+                              BaseType::FIXED, true, false},
+                    RobotCase{"allegro", COLLECTION + "allegro_hand_description/urdf/allegro_right_hand.urdf",
+                              BaseType::FIXED, true, false},
+                    RobotCase{"humanoid", COLLECTION + "simple_humanoid_description/urdf/simple_humanoid.urdf",
+                              BaseType::AUTO, false, true}),
+    [](const testing::TestParamInfo<RobotCase>& info) { return info.param.name; });
+}  // namespace
+}  // namespace frictional_contact_sim
