@@ -270,7 +270,10 @@ void SimulatorNode::holdForSubscribers()
 
 bool SimulatorNode::subscribersStand()
 {
-  const auto stands = [this](const std::string& topic) { return publisher_.subscribers(topic) > 0; };
+  // A topic named n times needs n subscribers.
+  const auto stands = [this](const std::string& topic) {
+    return publisher_.subscribers(topic) >= std::count(awaited_topics_.begin(), awaited_topics_.end(), topic);
+  };
   return std::all_of(awaited_topics_.begin(), awaited_topics_.end(), stands);
 }
 

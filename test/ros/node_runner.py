@@ -1,0 +1,71 @@
+"""Starts simulator_node from a test, with parameters of its own, and waits for its end."""
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+
+import rospy
+
+PACKAGE_DIR = pathlib.Path(__file__).resolve().parent.parent.parent
+NAME = "/simulator_node"
+TIMEOUT = 60.0  # of any single wait: generous, the machine may be loaded [s]
+
+
+def box_urdf():
+    return (PACKAGE_DIR / "test/ros/box_10kg.urdf").read_text()
+
+
+def quadruped_urdf():
+    return (PACKAGE_DIR / "urdf/quadruped.urdf").read_text()
+
+
+class Node:
+    """The node as a child process; its standard error goes to a file."""
+
+    def __init__(self, parameters, robot_description=None):
+        for name in (NAME, "/robot_description"):
+            if rospy.has_param(name):
+                rospy.delete_param(name)
+        if parameters:
+            rospy.set_param(NAME, parameters)
+        if robot_description is not None:
+            rospy.set_param("/robot_description", robot_description)
+        self.log = tempfile.TemporaryFile(mode="w+")
+        environment = dict(os.environ, ROSCONSOLE_FORMAT="[${severity}] ${message}")
+        self.process = subprocess.Popen(["rosrun", "frictional_contact_sim", "simulator_node"], stderr=self.log,
+                                        stdout=subprocess.DEVNULL, env=environment)
+
+    def wait(self, timeout=TIMEOUT):
+        """Exit code; a node that does not end is killed and gives None."""
+        try:
+            return self.process.wait(timeout)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            return None
+
+    def interrupt(self, timeout=TIMEOUT):
+        self.process.send_signal(signal.SIGINT)
+        return self.wait(timeout)
+
+    def stderr(self):
+        self.log.flush()
+        self.log.seek(0)
+        return self.log.read()
+
+    def lines(self, severity):
+        """Messages of one severity, without colours."""
+        text = self.stderr().replace("\x1b[0m", "").replace("\x1b[31m", "").replace("\x1b[33m", "")
+        return [line for line in text.splitlines() if line.startswith(f"[{severity}]")]
+
+
+def wait_until(condition, timeout=TIMEOUT):
+    """True when the condition comes to hold in time (wall clock)."""
+    import time
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.01)
+    return condition()
