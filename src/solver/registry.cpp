@@ -2,7 +2,9 @@
 
 #include <stdexcept>
 
+#include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
+#include "frictional_contact_sim/solver/portfolio.h"
 
 namespace frictional_contact_sim
 {
@@ -18,6 +20,11 @@ std::unique_ptr<Solver> create()
 const std::vector<SolverEntry>& solverRegistry()
 {
   static const std::vector<SolverEntry> registry = {
+      {"portfolio", &create<Portfolio>, "runs methods in turn and keeps the best iterate; the default",
+       "Acary, Bremond, Huber (2018), conclusions"},
+
+      {"ac_newton", &create<AcNewton>, "proximal semismooth Newton on the Alart-Curnier function",
+       "Alart, Curnier (1991); Cadoux (2009), (4.6), appendix D"},
       {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
        "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
   };

@@ -98,6 +98,18 @@ double Solver::residual(const DelassusProblem& problem, const Eigen::VectorXd& u
   return lawResidual(problem.laws, step_lengths_, free_velocity_, u, r);
 }
 
+void Solver::delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
+                      SolverResult& result) const
+{
+  method.stopping_ = stopping_;
+  method.stopping_.tolerance = tolerance;
+  method.stopping_.max_iterations = max_iterations;
+  method.start_ = start_;
+  method.step_lengths_ = step_lengths_;
+  method.free_velocity_ = free_velocity_;
+  method.doSolve(problem, result);
+}
+
 double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
 {
   const int rows = problem.W.rows();

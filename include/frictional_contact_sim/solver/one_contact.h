@@ -11,9 +11,9 @@
  *              b = q_T - W_TN q_N / W_NN:
  *                  r_T(kappa) = -(S + kappa I)^-1 b,   r_N(kappa) = -(q_N + W_NT r_T(kappa)) / W_NN
  *              and kappa is the root of mu r_N(kappa) / |r_T(kappa)| = 1. At kappa = 0 the left side is below 1
- * (sticking has failed), for large kappa it grows without bound: a root always exists. (S + kappa I)^-1 is explicit and 1/|r_T|
- *              almost linear in kappa, so a safeguarded Newton takes 3 to 6 evaluations of a dozen multiplications.
- *              In 2D everything is in closed form. W need not be symmetric. UNILATERAL, DRY_FRICTION, BILATERAL: closed form.
+ * (sticking has failed), for large kappa it grows without bound: a root always exists. (S + kappa I)^-1 is explicit and
+ * 1/|r_T| almost linear in kappa, so a safeguarded Newton takes 3 to 6 evaluations of a dozen multiplications. In 2D
+ * everything is in closed form. W need not be symmetric. UNILATERAL, DRY_FRICTION, BILATERAL: closed form.
  *
  * Source: Bonnefon, Daviet (2011) give the same root as a quartic in tan(theta/2); the scalar equation in kappa needs
  * no case distinction and does not lose digits. Cadoux (2009), 4.8.2, for its use contact by contact. Where W is

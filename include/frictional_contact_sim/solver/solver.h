@@ -85,6 +85,12 @@ protected:
   /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
   virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
   bool timeIsUp() const;
+  /**
+   * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
+   * and the final judgement of solve(): for methods made of methods.
+   */
+  void delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
+                SolverResult& result) const;
   /** @brief rho_i = 1/lambda_max(W_ii) of the problem being solved [kg]. */
   const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
   /** @brief E of the problem being solved at (u, r), u = W r + q given; costs no product with W. */

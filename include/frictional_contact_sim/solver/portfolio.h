@@ -1,0 +1,60 @@
+#pragma once
+/**
+ * @file portfolio.h
+ * @brief Methods in turn, the best iterate kept: the default of the package.
+ *
+ *   0  the guess is already good: no iteration at all
+ *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
+ *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
+ *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate and Newton from there, in longer rounds
+ * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
+ * the one whose iterate is returned.
+ *
+ * Source: Acary, Bremond, Huber (2018), conclusions: no method wins everywhere; hybrid starts and the proximal point
+ * algorithm around Newton reach the tightest tolerances.
+ */
+#include <Eigen/Core>
+#include <memory>
+
+#include "frictional_contact_sim/solver/solver.h"
+
+namespace frictional_contact_sim
+{
+class GaussSeidel;
+class AcNewton;
+
+struct PortfolioOptions
+{
+  int newton_first_rows = 100;  ///< up to this many rows Newton goes first, >= 0
+  int newton_first_steps = 60;  ///< its budget in that place, >= 1
+  int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
+  int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
+  int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
+  int max_rounds = 4;  ///< rounds of step 2, >= 0
+
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+class Portfolio : public Solver
+{
+public:
+  explicit Portfolio(const PortfolioOptions& options = {});
+  ~Portfolio() override;
+  void setOptions(const PortfolioOptions& options);
+
+protected:
+  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+
+private:
+  bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result);
+
+  PortfolioOptions options_;
+  std::unique_ptr<GaussSeidel> gauss_seidel_;
+  std::unique_ptr<AcNewton> newton_;
+  Eigen::VectorXd velocity_, best_r_;
+  double best_value_ = 0.0;
+  int used_ = 0;
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,106 @@
+#pragma once
+/**
+ * @file semismooth_newton.h
+ * @brief Semismooth Newton on a contact function Phi(r) = f(W r + q, r), u eliminated, with proximal regularisation.
+ *
+ *   outer   centre c = r,  u_alpha(r) = W r + q + alpha D (r - c),   D = diag(1/rho_i)
+ *   inner   (A (W + alpha D) + B) dr = -f(u_alpha, r),   A = df/du, B = df/dr block-diagonal
+ *           r <- r + t dr, t by a nonmonotone backtracking (Grippo, Lampariello, Lucidi 1986) on 1/2 |Phi/rho|^2
+ *   alpha <- alpha / 10 after an inner success, x 5 (at least proximal_restart) after a failure
+ * alpha [-] is relative to the Delassus entries. With rigid bodies A W + B is singular as a rule (Cadoux (2009),
+ * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
+ * near it: near zero for a cold start, near the last step's impulses for a warm one. Contacts predicted open are
+ * eliminated before the factorization: their impulse goes to zero. Dense LU with partial pivoting up to DENSE_LIMIT
+ * active rows, sparse LU beyond (which allocates).
+ *
+ * The contact function is an argument: Alart-Curnier (ac_newton) here, others are one ContactMap each.
+ * Source: Alart, Curnier (1991); Cadoux (2009), 4.2, 4.3, appendix D; Acary, Bremond, Huber (2018), section on the
+ * proximal point algorithm, for the rule on alpha. Departure: inexact inner solves, stopped when the inner error is
+ * below a tenth of the proximal perturbation.
+ */
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <memory>
+
+#include "frictional_contact_sim/math/contact_functions.h"
+#include "frictional_contact_sim/solver/solver.h"
+
+namespace frictional_contact_sim
+{
+/** @brief A contact function with Jacobians, for 3D and 2D Coulomb laws. rho_N = 1/W_NN, rho_T = 1/lambda_max(W_TT). */
+struct ContactMap
+{
+  ContactFunction<3> (*spatial)(const Vector<3>& u, const Vector<3>& r, double mu, double rho_normal,
+                                double rho_tangential);
+  ContactFunction<2> (*planar)(const Vector<2>& u, const Vector<2>& r, double mu, double rho_normal,
+                               double rho_tangential);
+};
+
+struct SemismoothNewtonOptions
+{
+  double proximal_start = 1e-6;  ///< first alpha [-], > 0
+  double proximal_min = 1e-13;  ///< smallest alpha [-], > 0
+  double proximal_max = 10.0;  ///< largest alpha; failing there ends the run [-]
+  double proximal_restart = 1e-3;  ///< smallest alpha after a failure [-]
+  double proximal_decrease = 0.1;  ///< factor after a success [-], in (0, 1)
+  double proximal_increase = 5.0;  ///< factor after a failure [-], > 1
+  int inner_iterations = 20;  ///< Newton steps a centre, >= 1
+  int line_search_steps = 8;  ///< halvings of t, >= 0
+  int line_search_memory = 4;  ///< merit values the new one is compared with, in [1, 8]
+  double sufficient_decrease = 1e-4;  ///< Armijo constant [-], in (0, 0.5)
+
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+class SemismoothNewton : public Solver
+{
+public:
+  SemismoothNewton(std::string name, const ContactMap& map, const SemismoothNewtonOptions& options = {});
+  ~SemismoothNewton() override;
+  void setOptions(const SemismoothNewtonOptions& options);
+
+  /// Above this many active rows the linear system is factored sparse when W is stored sparse.
+  static constexpr int DENSE_LIMIT = 120;
+
+protected:
+  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+
+private:
+  enum class Inner
+  {
+    SUCCESS,
+    CONVERGED,
+    FAILED,
+    OUT_OF_BUDGET
+  };
+  void prepare(const DelassusProblem& problem);
+  double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
+  bool direction(const DelassusProblem& problem, const Eigen::VectorXd& r);
+  void assembleDense(const DelassusProblem& problem);
+  bool solveSparse(const DelassusProblem& problem);
+  Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
+  double lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r);
+  void keepBest(double value, const Eigen::VectorXd& r);
+
+  ContactMap map_;
+  SemismoothNewtonOptions options_;
+  struct Sparse;
+  std::unique_ptr<Sparse> sparse_;
+
+  Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law
+  Eigen::VectorXd weight_;  ///< 1/rho_i a row: D, and what makes the merit a velocity
+  double alpha_ = 0.0;
+  Eigen::VectorXd centre_, u_, u_alpha_, f_, step_, step_velocity_, trial_r_, trial_u_, best_r_;
+  std::vector<double> by_u_, by_r_;  ///< A_i and B_i, 9 numbers a law, row-major
+  std::vector<int> active_;  ///< active row -> row
+  std::vector<int> position_;  ///< row -> active row or -1
+  Eigen::MatrixXd jacobian_;
+  Eigen::VectorXd rhs_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  double best_value_ = 0.0;
+  double history_[8] = {};
+  int history_count_ = 0;
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,103 @@
+#include "frictional_contact_sim/solver/portfolio.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "frictional_contact_sim/solver/ac_newton.h"
+#include "frictional_contact_sim/solver/gauss_seidel.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Sweeps after which Gauss-Seidel must have halved the residual to go on.
+constexpr int STALL_WINDOW = 20;
+
+void require(bool condition, const char* name, int value, int least)
+{
+  if (!condition)
+    throw std::invalid_argument(std::string("portfolio.") + name + " is " + std::to_string(value) +
+                                ", expected >= " + std::to_string(least));
+}
+}  // namespace
+
+void PortfolioOptions::validate() const
+{
+  require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
+  require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
+  require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
+  require(newton_steps >= 1, "newton_steps", newton_steps, 1);
+  require(later_sweeps >= 1, "later_sweeps", later_sweeps, 1);
+  require(max_rounds >= 0, "max_rounds", max_rounds, 0);
+}
+
+Portfolio::Portfolio(const PortfolioOptions& options)
+  : Solver("portfolio")
+  , options_(options)
+  , gauss_seidel_(std::make_unique<GaussSeidel>())
+  , newton_(std::make_unique<AcNewton>())
+{
+  options_.validate();
+  GaussSeidelOptions sweeps;
+  sweeps.stall_window = STALL_WINDOW;
+  gauss_seidel_->setOptions(sweeps);
+}
+
+Portfolio::~Portfolio() = default;
+
+void Portfolio::setOptions(const PortfolioOptions& options)
+{
+  options.validate();
+  options_ = options;
+}
+
+bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result)
+{
+  budget = std::min(budget, stopping().max_iterations - used_);
+  if (budget <= 0)
+    return false;
+  result.tried.push_back(method.name());
+  result.iterations = 0;
+  delegate(method, problem, stopping().tolerance, budget, result);
+  used_ += result.iterations;
+  result.iterations = used_;
+  const double value = localResidual(problem, stepLengths(), result.solution.r, velocity_);
+  if (value < best_value_)
+  {
+    best_value_ = value;
+    best_r_ = result.solution.r;
+    result.solver = method.name();
+  }
+  else
+    result.solution.r = best_r_;
+  return best_value_ <= stopping().tolerance;
+}
+
+void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  used_ = 0;
+  best_r_ = result.solution.r;
+  best_value_ = localResidual(problem, stepLengths(), best_r_, velocity_);
+  bool done = best_value_ <= stopping().tolerance;
+  const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
+  if (!done)
+    done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result)
+                        : run(*gauss_seidel_, problem, options_.first_sweeps, result) ||
+                              run(*newton_, problem, options_.newton_steps, result);
+  for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
+    done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result) ||
+           run(*newton_, problem, options_.newton_steps << round, result);
+  result.solution.r = best_r_;
+  if (done)
+  {
+    result.status = SolverStatus::CONVERGED;
+    return;
+  }
+  result.status = timeIsUp()                           ? SolverStatus::TIME_LIMIT
+                  : used_ >= stopping().max_iterations ? SolverStatus::MAX_ITERATIONS
+                                                       : SolverStatus::STAGNATED;
+  result.message = "no method of the portfolio reached the tolerance";
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,377 @@
+#include "frictional_contact_sim/solver/semismooth_newton.h"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "frictional_contact_sim/problem/law_functions.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// An inner solve is good enough when its error is below this share of the proximal perturbation.
+constexpr double INNER_SHARE = 0.1;
+/// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
+constexpr double ZERO_DIAGONAL = 1e-14;
+
+void require(bool condition, const char* name, double value, const char* expected)
+{
+  if (!condition)
+    throw std::invalid_argument(std::string("semismooth_newton.") + name + " is " + std::to_string(value) +
+                                ", expected " + expected);
+}
+
+template <int D>
+void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_r)
+{
+  for (int i = 0; i < D; ++i)
+    value[i] = f.value[i];
+  if (by_u == nullptr)
+    return;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+    {
+      by_u[D * i + j] = f.by_u(i, j);
+      by_r[D * i + j] = f.by_r(i, j);
+    }
+}
+}  // namespace
+
+/** Factorization of large systems; the pattern is analysed anew when the active set changes. */
+struct SemismoothNewton::Sparse
+{
+  using Matrix = Eigen::SparseMatrix<double>;
+  Matrix matrix;
+  std::vector<Eigen::Triplet<double>> triplets;
+  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
+};
+
+void SemismoothNewtonOptions::validate() const
+{
+  require(proximal_start > 0.0, "proximal_start", proximal_start, "> 0");
+  require(proximal_min > 0.0, "proximal_min", proximal_min, "> 0");
+  require(proximal_max >= proximal_start, "proximal_max", proximal_max, ">= proximal_start");
+  require(proximal_restart > 0.0, "proximal_restart", proximal_restart, "> 0");
+  require(proximal_decrease > 0.0 && proximal_decrease < 1.0, "proximal_decrease", proximal_decrease, "in (0, 1)");
+  require(proximal_increase > 1.0, "proximal_increase", proximal_increase, "> 1");
+  require(inner_iterations >= 1, "inner_iterations", inner_iterations, ">= 1");
+  require(line_search_steps >= 0, "line_search_steps", line_search_steps, ">= 0");
+  require(line_search_memory >= 1 && line_search_memory <= 8, "line_search_memory", line_search_memory, "1 to 8");
+  require(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "sufficient_decrease", sufficient_decrease,
+          "in (0, 0.5)");
+}
+
+SemismoothNewton::SemismoothNewton(std::string name, const ContactMap& map, const SemismoothNewtonOptions& options)
+  : Solver(std::move(name)), map_(map), options_(options), sparse_(std::make_unique<Sparse>())
+{
+  options_.validate();
+}
+
+SemismoothNewton::~SemismoothNewton() = default;
+
+void SemismoothNewton::setOptions(const SemismoothNewtonOptions& options)
+{
+  options.validate();
+  options_ = options;
+}
+
+void SemismoothNewton::prepare(const DelassusProblem& problem)
+{
+  const int rows = problem.W.rows();
+  const int count = problem.W.blocks();
+  for (Eigen::VectorXd* vector : {&weight_, &u_, &u_alpha_, &f_, &step_, &step_velocity_, &trial_r_, &trial_u_})
+    vector->resize(rows);
+  rho_normal_.resize(count);
+  rho_tangential_.resize(count);
+  by_u_.resize(9 * static_cast<std::size_t>(count));
+  by_r_.resize(9 * static_cast<std::size_t>(count));
+  active_.reserve(static_cast<std::size_t>(rows));
+  position_.resize(static_cast<std::size_t>(rows));
+  for (int i = 0; i < count; ++i)
+  {
+    const double rho = stepLengths()[i];
+    double normal = 0.0, tangential = 0.0;
+    if (problem.W.dimension(i) == 3)
+    {
+      const SquareMatrix<3> W = problem.W.diagonalBlock<3>(i);
+      normal = W(0, 0);
+      tangential = largestEigenvalue(SquareMatrix<2>(W.bottomRightCorner<2, 2>()));
+    }
+    else if (problem.W.dimension(i) == 2)
+    {
+      const SquareMatrix<2> W = problem.W.diagonalBlock<2>(i);
+      normal = W(0, 0);
+      tangential = W(1, 1);
+    }
+    rho_normal_[i] = normal * rho > ZERO_DIAGONAL ? 1.0 / normal : rho;
+    rho_tangential_[i] = tangential * rho > ZERO_DIAGONAL ? 1.0 / tangential : rho;
+    weight_.segment(problem.W.offset(i), problem.W.dimension(i)).setConstant(1.0 / rho);
+  }
+}
+
+double SemismoothNewton::evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r,
+                                  bool jacobians)
+{
+  double merit = 0.0;
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const auto index = static_cast<std::size_t>(i);
+    const int row = problem.W.offset(i);
+    const Law& law = problem.laws[index];
+    double* by_u = jacobians ? &by_u_[9 * index] : nullptr;
+    double* by_r = jacobians ? &by_r_[9 * index] : nullptr;
+    if (law.type == LawType::COULOMB_3D)
+      store<3>(map_.spatial(u.segment<3>(row), r.segment<3>(row), law.coefficient, rho_normal_[i], rho_tangential_[i]),
+               &f_[row], by_u, by_r);
+    else if (law.type == LawType::COULOMB_2D)
+      store<2>(map_.planar(u.segment<2>(row), r.segment<2>(row), law.coefficient, rho_normal_[i], rho_tangential_[i]),
+               &f_[row], by_u, by_r);
+    else
+      store<1>(oneDimensionalFunction(law, u[row], r[row], stepLengths()[i]), &f_[row], by_u, by_r);
+    for (int k = row; k < row + law.dimension(); ++k)
+      merit += (f_[k] * weight_[k]) * (f_[k] * weight_[k]);
+  }
+  return merit;
+}
+
+bool SemismoothNewton::direction(const DelassusProblem& problem, const Eigen::VectorXd& r)
+{
+  // Laws with A_i = 0 and B_i = -I (open contacts, clipped rows) have dr_i = f_i: they leave the system.
+  active_.clear();
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const int d = problem.W.dimension(i);
+    const double* by_u = &by_u_[9 * static_cast<std::size_t>(i)];
+    const bool fixed = std::all_of(by_u, by_u + d * d, [](double value) { return value == 0.0; });
+    for (int row = problem.W.offset(i); row < problem.W.offset(i) + d; ++row)
+    {
+      position_[static_cast<std::size_t>(row)] = fixed ? -1 : static_cast<int>(active_.size());
+      if (!fixed)
+        active_.push_back(row);
+    }
+    if (!fixed)
+      continue;
+    // B_i dr = -f with B_i = -I but for the coupling of a clipped friction to its normal impulse.
+    const int row = problem.W.offset(i);
+    const double* by_r = &by_r_[9 * static_cast<std::size_t>(i)];
+    step_[row] = -f_[row] / by_r[0];
+    for (int k = 1; k < d; ++k)
+      step_[row + k] = (f_[row + k] + by_r[d * k] * step_[row]) / -by_r[d * k + k];
+  }
+  const auto size = static_cast<Eigen::Index>(active_.size());
+  if (size == 0)
+    return true;
+  if (!problem.W.isDense() && size > DENSE_LIMIT)
+  {
+    if (!solveSparse(problem))
+      return false;
+  }
+  else
+  {
+    assembleDense(problem);
+    lu_.compute(jacobian_);
+    rhs_ = lu_.solve(rhs_);
+  }
+  if (!rhs_.allFinite())
+    return false;
+  for (Eigen::Index k = 0; k < size; ++k)
+    step_[active_[static_cast<std::size_t>(k)]] = rhs_[k];
+  static_cast<void>(r);
+  return true;
+}
+
+void SemismoothNewton::assembleDense(const DelassusProblem& problem)
+{
+  const auto size = static_cast<Eigen::Index>(active_.size());
+  jacobian_.setZero(size, size);
+  rhs_.setZero(size);
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const int row = problem.W.offset(i);
+    const int d = problem.W.dimension(i);
+    const int first = position_[static_cast<std::size_t>(row)];
+    if (first < 0)
+      continue;
+    const double* A = &by_u_[9 * static_cast<std::size_t>(i)];
+    const double* B = &by_r_[9 * static_cast<std::size_t>(i)];
+    problem.W.visitRow(i,
+                       [&](int column, const double* w, int stride)
+                       {
+                         const int target = position_[static_cast<std::size_t>(column)];
+                         for (int a = 0; a < d; ++a)
+                         {
+                           double sum = 0.0;
+                           for (int k = 0; k < d; ++k)
+                             sum += A[d * a + k] * w[k * stride];
+                           if (target >= 0)
+                             jacobian_(first + a, target) = sum;
+                           else
+                             rhs_[first + a] -= sum * step_[column];
+                         }
+                       });
+    for (int a = 0; a < d; ++a)
+    {
+      rhs_[first + a] -= f_[row + a];
+      for (int b = 0; b < d; ++b)
+        jacobian_(first + a, first + b) += B[d * a + b] + alpha_ * A[d * a + b] * weight_[row + b];
+    }
+  }
+}
+
+bool SemismoothNewton::solveSparse(const DelassusProblem& problem)
+{
+  const auto size = static_cast<Eigen::Index>(active_.size());
+  sparse_->triplets.clear();
+  rhs_.setZero(size);
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const int row = problem.W.offset(i);
+    const int d = problem.W.dimension(i);
+    const int first = position_[static_cast<std::size_t>(row)];
+    if (first < 0)
+      continue;
+    const double* A = &by_u_[9 * static_cast<std::size_t>(i)];
+    const double* B = &by_r_[9 * static_cast<std::size_t>(i)];
+    problem.W.visitRow(i,
+                       [&](int column, const double* w, int stride)
+                       {
+                         const int target = position_[static_cast<std::size_t>(column)];
+                         for (int a = 0; a < d; ++a)
+                         {
+                           double sum = 0.0;
+                           for (int k = 0; k < d; ++k)
+                             sum += A[d * a + k] * w[k * stride];
+                           if (target >= 0)
+                             sparse_->triplets.emplace_back(first + a, target, sum);
+                           else
+                             rhs_[first + a] -= sum * step_[column];
+                         }
+                       });
+    for (int a = 0; a < d; ++a)
+    {
+      rhs_[first + a] -= f_[row + a];
+      for (int b = 0; b < d; ++b)
+        sparse_->triplets.emplace_back(first + a, first + b, B[d * a + b] + alpha_ * A[d * a + b] * weight_[row + b]);
+    }
+  }
+  sparse_->matrix.resize(size, size);
+  sparse_->matrix.setFromTriplets(sparse_->triplets.begin(), sparse_->triplets.end());
+  sparse_->lu.compute(sparse_->matrix);
+  if (sparse_->lu.info() != Eigen::Success)
+    return false;
+  rhs_ = sparse_->lu.solve(rhs_);
+  return true;
+}
+
+double SemismoothNewton::lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r)
+{
+  problem.W.apply(step_, step_velocity_);
+  step_velocity_.array() += alpha_ * weight_.array() * step_.array();
+  const double reference =
+      *std::max_element(history_, history_ + std::min(history_count_, options_.line_search_memory));
+  double best_t = 0.0;
+  double best_merit = std::numeric_limits<double>::infinity();
+  double t = 1.0;
+  for (int k = 0; k <= options_.line_search_steps; ++k, t *= 0.5)
+  {
+    trial_r_ = r + t * step_;
+    trial_u_ = u_alpha_ + t * step_velocity_;
+    const double merit = evaluate(problem, trial_u_, trial_r_, false);
+    if (merit <= (1.0 - 2.0 * options_.sufficient_decrease * t) * reference)
+      return t;
+    if (merit < best_merit)
+    {
+      best_merit = merit;
+      best_t = t;
+    }
+  }
+  // No sufficient decrease: the best of the tried ones when it is a decrease at all.
+  return best_merit < reference ? best_t : 0.0;
+}
+
+void SemismoothNewton::keepBest(double value, const Eigen::VectorXd& r)
+{
+  if (value < best_value_)
+  {
+    best_value_ = value;
+    best_r_ = r;
+  }
+}
+
+SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& problem, SolverResult& result)
+{
+  Eigen::VectorXd& r = result.solution.r;
+  history_count_ = 0;
+  for (int k = 0; k <= options_.inner_iterations; ++k)
+  {
+    problem.W.apply(r, u_);
+    u_ += problem.q;
+    const double value = residual(problem, u_, r);
+    keepBest(value, r);
+    if (value <= stopping().tolerance)
+      return Inner::CONVERGED;
+    u_alpha_.array() = u_.array() + alpha_ * weight_.array() * (r - centre_).array();
+    const double merit = evaluate(problem, u_alpha_, r, true);
+    if (!std::isfinite(merit))
+      return Inner::FAILED;
+    const double perturbation = (alpha_ * weight_.array() * (r - centre_).array()).matrix().squaredNorm();
+    if (k > 0 && merit <= INNER_SHARE * INNER_SHARE * perturbation)
+      return Inner::SUCCESS;
+    if (k == options_.inner_iterations)
+      return Inner::FAILED;
+    if (result.iterations >= stopping().max_iterations || timeIsUp())
+      return Inner::OUT_OF_BUDGET;
+    ++result.iterations;
+    history_[history_count_++ % options_.line_search_memory] = merit;
+    if (!direction(problem, r))
+      return Inner::FAILED;
+    const double t = lineSearch(problem, r);
+    if (t == 0.0)
+      return Inner::FAILED;
+    r += t * step_;
+  }
+  return Inner::FAILED;
+}
+
+void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  prepare(problem);
+  Eigen::VectorXd& r = result.solution.r;
+  best_value_ = std::numeric_limits<double>::infinity();
+  best_r_ = r;
+  alpha_ = options_.proximal_start;
+  result.status = SolverStatus::STAGNATED;
+  result.message = "no proximal parameter leads on";
+  while (true)
+  {
+    centre_ = r;
+    const Inner inner = solveProximal(problem, result);
+    if (inner == Inner::CONVERGED)
+    {
+      result.status = SolverStatus::CONVERGED;
+      return;
+    }
+    if (inner == Inner::OUT_OF_BUDGET)
+    {
+      const bool time = timeIsUp();
+      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
+      result.message = time ? "time limit reached" : "Newton iterations exhausted";
+      break;
+    }
+    if (inner == Inner::SUCCESS)
+      alpha_ = std::max(options_.proximal_decrease * alpha_, options_.proximal_min);
+    else
+    {
+      if (alpha_ >= options_.proximal_max)
+        break;
+      alpha_ = std::clamp(options_.proximal_increase * alpha_, options_.proximal_restart, options_.proximal_max);
+      r = centre_;
+    }
+  }
+  r = best_r_;
+}
+
+}  // namespace frictional_contact_sim
