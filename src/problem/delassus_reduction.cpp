@@ -371,4 +371,11 @@ void DelassusReduction::recover(const IncrementalProblem& problem, Solution& sol
   }
 }
 
+DelassusProblem reduce(const IncrementalProblem& problem)
+{
+  DelassusReduction reduction;
+  reduction.compute(problem);
+  return reduction.problem();
+}
+
 }  // namespace frictional_contact_sim

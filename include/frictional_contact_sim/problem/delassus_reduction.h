@@ -90,4 +90,7 @@ private:
   Eigen::VectorXd particular_, coefficients_;
 };
 
+/** @brief The local problem of a global one, for tools and tests. */
+DelassusProblem reduce(const IncrementalProblem& problem);
+
 }  // namespace frictional_contact_sim
