@@ -59,7 +59,6 @@ Eigen::Isometry3d poseAt(double x, double y, double z)
 Scenario groundScene(double friction, double restitution)
 {
   Scenario scenario;
-  scenario.solver = "gauss_seidel";
   scenario.ground = GroundSpec{};
   scenario.materials.fallback = {friction, restitution};
   scenario.stopping.tolerance = 1e-13;
