@@ -32,8 +32,8 @@ IncrementalProblem restingBox(double mass, const Eigen::Vector3d& half_sizes, do
   problem.M = sparse(Eigen::MatrixXd(inertia.asDiagonal()));
   problem.f.setZero(6);
   problem.f.head<3>() = -mass * (velocity + time_step * gravity);
-  const std::array<Eigen::Vector3d, 4> corners = { Eigen::Vector3d(a, b, -c), Eigen::Vector3d(-a, b, -c),
-                                                   Eigen::Vector3d(-a, -b, -c), Eigen::Vector3d(a, -b, -c) };
+  const std::array<Eigen::Vector3d, 4> corners = {Eigen::Vector3d(a, b, -c), Eigen::Vector3d(-a, b, -c),
+                                                  Eigen::Vector3d(-a, -b, -c), Eigen::Vector3d(a, -b, -c)};
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(12, 6);
   for (int i = 0; i < 4; ++i)
   {
@@ -44,7 +44,7 @@ IncrementalProblem restingBox(double mass, const Eigen::Vector3d& half_sizes, do
     cross << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
     H.block<3, 3>(3 * i, 0) = frame;
     H.block<3, 3>(3 * i, 3) = -frame * cross;  // velocity of the corner: v + omega x x
-    problem.laws.push_back({ LawType::COULOMB_3D, friction });
+    problem.laws.push_back({LawType::COULOMB_3D, friction});
   }
   problem.H = sparse(H);
   problem.w.setZero(12);
@@ -62,7 +62,7 @@ IncrementalProblem squareOnTwoContacts()
   H << 0, 1, -1, 1, 0, 1, 0, 1, 1, 1, 0, 1;
   problem.H = sparse(H);
   problem.w.setZero(4);
-  problem.laws.assign(2, { LawType::COULOMB_2D, 1.0 });
+  problem.laws.assign(2, {LawType::COULOMB_2D, 1.0});
   problem.G.resize(0, 3);
   problem.b.resize(0);
   return problem;
@@ -73,21 +73,10 @@ namespace
 class Draw
 {
 public:
-  explicit Draw(std::uint32_t seed) : engine_(seed)
-  {
-  }
-  double normal()
-  {
-    return normal_(engine_);
-  }
-  double uniform(double low, double high)
-  {
-    return low + (high - low) * uniform_(engine_);
-  }
-  int integer(int count)
-  {
-    return static_cast<int>(engine_() % static_cast<std::uint32_t>(count));
-  }
+  explicit Draw(std::uint32_t seed) : engine_(seed) {}
+  double normal() { return normal_(engine_); }
+  double uniform(double low, double high) { return low + (high - low) * uniform_(engine_); }
+  int integer(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
   Eigen::MatrixXd matrix(int rows, int columns)
   {
     Eigen::MatrixXd result(rows, columns);
@@ -118,13 +107,13 @@ IncrementalProblem randomProblem(const RandomProblemOptions& options, std::uint3
   problem.M = sparse(M);
   problem.f = draw.matrix(size, 1);
   for (int i = 0; i < options.contacts; ++i)
-    problem.laws.push_back({ LawType::COULOMB_3D, draw.uniform(0.2, 0.8) });
+    problem.laws.push_back({LawType::COULOMB_3D, draw.uniform(0.2, 0.8)});
   for (int i = 0; i < options.planar_contacts; ++i)
-    problem.laws.push_back({ LawType::COULOMB_2D, draw.uniform(0.2, 0.8) });
+    problem.laws.push_back({LawType::COULOMB_2D, draw.uniform(0.2, 0.8)});
   for (int i = 0; i < options.unilateral; ++i)
-    problem.laws.push_back({ LawType::UNILATERAL, 0.0 });
+    problem.laws.push_back({LawType::UNILATERAL, 0.0});
   for (int i = 0; i < options.dry; ++i)
-    problem.laws.push_back({ LawType::DRY_FRICTION, draw.uniform(0.1, 1.0) });
+    problem.laws.push_back({LawType::DRY_FRICTION, draw.uniform(0.1, 1.0)});
   const int rows = rowCount(problem.laws);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(rows, size);
   int row = 0;

@@ -33,12 +33,12 @@ IncrementalProblem squareOnTwoContacts();
 /** @brief What a random problem is made of. */
 struct RandomProblemOptions
 {
-  int bodies = 4;           ///< blocks of 6 velocities
-  int contacts = 6;         ///< Coulomb contacts in 3D between random pairs (or a body and the world)
+  int bodies = 4;  ///< blocks of 6 velocities
+  int contacts = 6;  ///< Coulomb contacts in 3D between random pairs (or a body and the world)
   int planar_contacts = 0;  ///< Coulomb contacts in 2D
-  int unilateral = 0;       ///< one-dimensional rows of each kind
+  int unilateral = 0;  ///< one-dimensional rows of each kind
   int dry = 0;
-  int bilaterals = 0;       ///< rows of G
+  int bilaterals = 0;  ///< rows of G
   bool moving_externals = false;  ///< w != 0 (otherwise 0: a solution always exists, Cadoux (2009), chapter 3)
 };
 
