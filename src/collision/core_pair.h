@@ -42,6 +42,12 @@ int alignedFace(const CoreView& view, const Eigen::Vector3d& direction);
 FaceAxis faceAxis(const CorePair& pair, bool is_on_a, int face);
 /** @brief Sine of the angle between unit vectors, 2 beyond 90 degrees. */
 double angleBetween(const Eigen::Vector3d& n, const Eigen::Vector3d& other);
+/** @brief Corners of a face and outward normals of its sides into the workspace. */
+void setSides(const CoreView& view, const Polyhedron::Face& face, const Eigen::Vector3d& outwards, Manifold& work);
+/** @brief Whether a point is between the sides set last. */
+bool isInsideSides(const Eigen::Vector3d& point, double tolerance, const Manifold& work);
+constexpr double SIDE_TOLERANCE = 1e-8;  ///< times the size: points this near a side are on it
+
 /** @brief Drops the points from `found` on that are within 1e-2 of the size of a point from `first` to `found`. */
 void dropDuplicates(const CorePair& pair, int first, int found);
 /** @brief reduceManifold with tangents across the first normal, fixed in b. */
@@ -64,8 +70,15 @@ struct EdgeEnds
 /**
  * @brief Closest points of two edges or vertices, adds the contact; near-parallel edges give the ends of the overlap.
  * @param n direction from b to a: decides the side when the features touch or overlap
+ * @param is_side_known n tells outside from inside (a solid is involved); else the closest points are never inside
  */
-void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds& on_b, const Eigen::Vector3d& n);
+void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds& on_b, const Eigen::Vector3d& n,
+                     bool is_side_known = true);
+
+/** @brief The contact of the supporting points along n; gap = s(n), exact whatever the features. */
+void addSupportContact(const CorePair& pair, const Eigen::Vector3d& n);
+/** @brief Smallest gap of the points from `first` on, +infinity for none. */
+double deepestGap(const CorePair& pair, int first);
 
 /// Points of two lines p + s d, q + t e nearest to each other. Not for parallel lines.
 struct LineParameters

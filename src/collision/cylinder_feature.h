@@ -28,11 +28,6 @@ inline Feature sideFeature(int k)
 {
   return makeFeature(FeatureKind::CURVE, 2 * RIM_POINTS + 2 + k);
 }
-/// Where an edge of the other body cuts the rim; two such points an edge.
-inline Feature rimCutFeature(int cap, int edge, int which)
-{
-  return makeFeature(FeatureKind::CURVE, 64 + ((edge & 0xfff) << 2) + 2 * cap + which);
-}
 inline Feature capFeature(int cap)
 {
   return makeFeature(FeatureKind::FACE, cap);

@@ -49,19 +49,24 @@ double clamped(double t)
   return std::clamp(t, 0.0, 1.0);
 }
 
+struct Side
+{
+  const Eigen::Vector3d& direction;  ///< from b to a
+  bool is_known;
+};
+
 /// One contact of two points that are closest to each other on their features.
-void addNearest(const CorePair& pair, const EdgeLine& a, double s, const EdgeLine& b, double t,
-                const Eigen::Vector3d& fallback)
+void addNearest(const CorePair& pair, const EdgeLine& a, double s, const EdgeLine& b, double t, const Side& side)
 {
   const Eigen::Vector3d point_a = a.at(s);
   const Eigen::Vector3d point_b = b.at(t);
   const Eigen::Vector3d difference = point_a - point_b;
   const double distance = difference.norm();
-  Eigen::Vector3d n = fallback;
+  Eigen::Vector3d n = side.direction;
   if (distance > NO_DISTANCE * pair.size)
   {
-    // Sharp features that overlap: their difference points the other way.
-    n = (difference.dot(fallback) < 0.0 && pair.radii() == 0.0 ? -1.0 : 1.0) / distance * difference;
+    // Cores that overlap: the difference of their points is against the normal.
+    n = (side.is_known && difference.dot(side.direction) < 0.0 ? -1.0 : 1.0) / distance * difference;
   }
   pair.add(point_a, point_b, n, a.featureAt(s), b.featureAt(t));
 }
@@ -81,7 +86,7 @@ LineParameters closestOnSegments(const EdgeLine& a, const EdgeLine& b)
 }
 
 /// Ends of the common stretch of two near-parallel edges. @return number added
-int addOverlapEnds(const CorePair& pair, const EdgeLine& a, const EdgeLine& b, const Eigen::Vector3d& fallback)
+int addOverlapEnds(const CorePair& pair, const EdgeLine& a, const EdgeLine& b, const Side& side)
 {
   const double at_0 = a.nearest(b.at(0.0));
   const double at_1 = a.nearest(b.at(1.0));
@@ -95,7 +100,7 @@ int addOverlapEnds(const CorePair& pair, const EdgeLine& a, const EdgeLine& b, c
   {
     const bool is_end_of_a = s <= 0.0 || s >= 1.0;
     const double t = is_end_of_a ? clamped(b.nearest(a.at(s))) : (std::abs(s - at_0) < std::abs(s - at_1) ? 0.0 : 1.0);
-    addNearest(pair, a, s, b, t, fallback);
+    addNearest(pair, a, s, b, t, side);
   }
   return 2;
 }
@@ -115,8 +120,10 @@ LineParameters closestOnLines(const Eigen::Vector3d& p, const Eigen::Vector3d& d
   return {between.cross(e).dot(normal) / scale, between.cross(d).dot(normal) / scale};
 }
 
-void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds& on_b, const Eigen::Vector3d& n)
+void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds& on_b, const Eigen::Vector3d& n,
+                     bool is_side_known)
 {
+  const Side side{n, is_side_known};
   const EdgeLine a = makeLine(pair.a, on_a);
   const EdgeLine b = makeLine(pair.b, on_b);
   const double lengths = a.direction.norm() * b.direction.norm();
@@ -124,7 +131,7 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
   {
     const double t = clamped(b.nearest(a.start));
     const double s = clamped(a.nearest(b.at(t)));
-    addNearest(pair, a, s, b, t, n);
+    addNearest(pair, a, s, b, t, side);
     return;
   }
   const Eigen::Vector3d cross = a.direction.cross(b.direction);
@@ -132,7 +139,7 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
   const double parallel = pair.radii() > 0.0 ? PARALLEL_ROUND : PARALLEL_SHARP;
   const bool has_crossing = sine > (pair.radii() > 0.0 ? PARALLEL_EXACT : PARALLEL_SHARP);
   const int first = pair.manifold.count;
-  const int ends = sine < parallel ? addOverlapEnds(pair, a, b, n) : 0;
+  const int ends = sine < parallel ? addOverlapEnds(pair, a, b, side) : 0;
   if (!has_crossing && ends > 0)
   {
     return;
@@ -147,7 +154,7 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
   else
   {
     const LineParameters closest = closestOnSegments(a, b);
-    addNearest(pair, a, closest.s, b, closest.t, n);
+    addNearest(pair, a, closest.s, b, closest.t, side);
   }
   // the closest point may be one of the ends
   const Eigen::Vector3d last = pair.manifold.points[pair.manifold.count - 1].position;

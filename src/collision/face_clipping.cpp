@@ -7,8 +7,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-// Corners this near a side of the reference face are on it: boxes of one size, stacked, keep their four corners.
-constexpr double SIDE_TOLERANCE = 1e-8;  // times the size
 constexpr double SAME_POINT = 1e-7;  // times the size
 
 struct Reference
@@ -23,21 +21,6 @@ struct Reference
   Feature corner(int k) const { return makeFeature(FeatureKind::VERTEX, view.core().face_vertices[face.first + k]); }
   Feature whole() const { return makeFeature(FeatureKind::FACE, face_index); }
 };
-
-void setSides(const Reference& reference, Manifold& work)
-{
-  work.corners.clear();
-  work.side_normals.clear();
-  for (int k = 0; k < reference.face.size; ++k)
-  {
-    work.corners.push_back(reference.view.vertex(reference.view.core().face_vertices[reference.face.first + k]));
-  }
-  for (int k = 0; k < reference.face.size; ++k)
-  {
-    const Eigen::Vector3d edge = work.corners[(k + 1) % reference.face.size] - work.corners[k];
-    work.side_normals.push_back(edge.cross(reference.normal).normalized());
-  }
-}
 
 /// Corner of the reference where the clipped polygon turns from side j to side k; neighbours share one.
 Feature cornerBetween(const Reference& reference, int j, int k)
@@ -112,18 +95,6 @@ void clipSegment(const Reference& reference, double tolerance, Manifold& work)
   }
 }
 
-bool isInside(const Eigen::Vector3d& point, double tolerance, const Manifold& work)
-{
-  for (std::size_t k = 0; k < work.corners.size(); ++k)
-  {
-    if (work.side_normals[k].dot(point - work.corners[k]) > tolerance)
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 int incidentFace(const CoreView& view, const Eigen::Vector3d& normal)
 {
   const Eigen::Vector3d local = view.rotation.transpose() * normal;
@@ -160,7 +131,7 @@ void addNeighbours(const CoreView& view, const Polyhedron::Face& face, const Ref
       const Feature feature = makeFeature(FeatureKind::VERTEX, other);
       const auto has_it = [&](const ClipPoint& point) { return point.incident == feature; };
       const Eigen::Vector3d position = view.vertex(other);
-      if (reference.height(position) <= highest && isInside(position, tolerance, work) &&
+      if (reference.height(position) <= highest && isInsideSides(position, tolerance, work) &&
           std::none_of(work.polygon.begin(), work.polygon.end(), has_it))
       {
         addClipPoint(view, other, 0, reference, work);
@@ -172,9 +143,10 @@ void addNeighbours(const CoreView& view, const Polyhedron::Face& face, const Ref
 void clipIncident(const CorePair& pair, const Reference& reference, const CoreView& incident)
 {
   Manifold& work = pair.manifold;
+  // boxes of one size, stacked, keep their four corners: those on a side count as inside
   const double tolerance = SIDE_TOLERANCE * pair.size;
   const Polyhedron& core = incident.core();
-  setSides(reference, work);
+  setSides(reference.view, reference.face, reference.normal, work);
   work.polygon.clear();
   if (core.vertices.size() <= 2)
   {
@@ -186,7 +158,7 @@ void clipIncident(const CorePair& pair, const Reference& reference, const CoreVi
     {
       clipSegment(reference, tolerance, work);
     }
-    else if (!isInside(work.polygon[0].position, tolerance, work))
+    else if (!isInsideSides(work.polygon[0].position, tolerance, work))
     {
       work.polygon.clear();
     }
@@ -208,6 +180,33 @@ void clipIncident(const CorePair& pair, const Reference& reference, const CoreVi
   }
 }
 }  // namespace
+
+void setSides(const CoreView& view, const Polyhedron::Face& face, const Eigen::Vector3d& outwards, Manifold& work)
+{
+  work.corners.clear();
+  work.side_normals.clear();
+  for (int k = 0; k < face.size; ++k)
+  {
+    work.corners.push_back(view.vertex(view.core().face_vertices[face.first + k]));
+  }
+  for (int k = 0; k < face.size; ++k)
+  {
+    const Eigen::Vector3d edge = work.corners[(k + 1) % face.size] - work.corners[k];
+    work.side_normals.push_back(edge.cross(outwards).normalized());
+  }
+}
+
+bool isInsideSides(const Eigen::Vector3d& point, double tolerance, const Manifold& work)
+{
+  for (std::size_t k = 0; k < work.corners.size(); ++k)
+  {
+    if (work.side_normals[k].dot(point - work.corners[k]) > tolerance)
+    {
+      return false;
+    }
+  }
+  return true;
+}
 
 bool clipAgainstFace(const CorePair& pair, const FaceAxis& axis)
 {

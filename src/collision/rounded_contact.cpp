@@ -49,13 +49,15 @@ double angleBetween(const Eigen::Vector3d& n, const Eigen::Vector3d& other)
 
 namespace
 {
-// Sharp cores: a face carries the contact unless another direction separates better by this fraction of the size and
-// is tilted against the face by more than FACE_ANGLE. At contact the gap is the same; the face brings all its points.
+// A face carries the contact unless another direction separates better by this fraction of the size. Sharp cores: at
+// contact the gap is the same, and the face brings all its points. Rounded cores touch at a distance r: the face must
+// be the closest feature to second order of r.
 constexpr double FACE_PREFERENCE = 1e-6;
-constexpr double FACE_ANGLE = 1e-3;
-// Rounded cores touch at a distance r: the face must be the closest feature to second order of r.
 constexpr double FACE_PREFERENCE_ROUND = 1e-13;
-constexpr double FACE_ANGLE_ROUND = 1e-7;
+// The deepest point must be over the face, else the closest feature is beside it.
+constexpr double OVER_FACE = 1e-9;
+constexpr double OVER_FACE_ROUND = 1e-13;
+constexpr double PARALLEL_EDGES = 1e-3;  // sine below which the face normals stand for the product of two edges
 // Resting on an edge but nearly along a face: the points over the face are look-ahead contacts up to this tilt.
 constexpr double LOOK_AHEAD_ANGLE = 0.1;
 
@@ -103,42 +105,72 @@ void addSimplexContact(const CorePair& pair, const ClosestPoints& closest, const
     addEdgeContacts(pair, on_a, on_b, n);
     return;
   }
-  Eigen::Vector3d low_a;
-  Eigen::Vector3d high_b;
-  const int vertex_a = pair.a.exactSupport(-n, low_a);
-  const int vertex_b = pair.b.exactSupport(n, high_b);
-  const double gap = n.dot(low_a - high_b);
-  const Eigen::Vector3d middle = 0.5 * (closest.point_a + closest.point_b);
-  const Eigen::Vector3d on_plane = middle + n * (n.dot(0.5 * (low_a + high_b) - middle));
-  pair.add(on_plane + 0.5 * gap * n, on_plane - 0.5 * gap * n, n, makeFeature(FeatureKind::VERTEX, vertex_a),
-           makeFeature(FeatureKind::VERTEX, vertex_b));
+  addSupportContact(pair, n);
 }
 
-void collideAlong(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest)
+/// The face manifold, when the deepest point is over the face.
+bool tryFace(const CorePair& pair, const FaceAxis& face)
 {
+  const int first = pair.manifold.count;
+  const double tolerance = (pair.radii() > 0.0 ? OVER_FACE_ROUND : OVER_FACE) * pair.size;
+  clipAgainstFace(pair, face);
+  if (deepestGap(pair, first) <= face.separation - pair.radii() + tolerance)
+  {
+    return true;
+  }
+  pair.manifold.count = first;
+  return false;
+}
+
+/// Tries the faces that separate as well as `best`, the preferred one first.
+bool tryFaces(const CorePair& pair, const FaceAxis& preferred, const FaceAxis& other, double best)
+{
+  const double least = best - (pair.radii() > 0.0 ? FACE_PREFERENCE_ROUND : FACE_PREFERENCE) * pair.size;
+  return (preferred.face >= 0 && preferred.separation >= least && tryFace(pair, preferred)) ||
+         (other.face >= 0 && other.separation >= least && tryFace(pair, other));
+}
+
+/// Adds what is over the face as look-ahead contacts, when it is nearly across the normal.
+void addLookAhead(const CorePair& pair, const FaceAxis& face, const Eigen::Vector3d& n, int first)
+{
+  if (face.face >= 0 && angleBetween(n, face.normal) < LOOK_AHEAD_ANGLE)
+  {
+    const int found = pair.manifold.count;
+    clipAgainstFace(pair, face);
+    dropDuplicates(pair, first, found);
+  }
+}
+
+/// Vertices and edges along n; the support functions have the last word on the gap.
+void addFeatureContacts(const CorePair& pair, const ClosestPoints& closest, const Eigen::Vector3d& n, double best,
+                        const FaceAxis& face)
+{
+  const int first = pair.manifold.count;
+  addSimplexContact(pair, closest, n);
+  const double expected = best - pair.radii();
+  if (std::abs(deepestGap(pair, first) - expected) > OVER_FACE * pair.size && expected <= pair.margin)
+  {
+    pair.manifold.count = first;
+    addSupportContact(pair, n);
+  }
+  addLookAhead(pair, face, n, first);
+}
+
+void collideAlong(const CorePair& pair)
+{
+  ClosestPoints closest;
+  const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
   const double best = separation(pair.a, pair.b, n);
   if (best > pair.margin + pair.radii())
   {
     return;
   }
-  const FaceAxis face =
-      chooseFace(pair, faceAxis(pair, true, alignedFace(pair.a, -n)), faceAxis(pair, false, alignedFace(pair.b, n)));
-  const bool is_round = pair.radii() > 0.0;
-  const double angle = face.face < 0 ? 2.0 : angleBetween(n, face.normal);
-  const bool is_face =
-      face.face >= 0 && (face.separation >= best - (is_round ? FACE_PREFERENCE_ROUND : FACE_PREFERENCE) * pair.size ||
-                         angle < (is_round ? FACE_ANGLE_ROUND : FACE_ANGLE));
-  if (is_face && clipAgainstFace(pair, face))
+  const FaceAxis on_a = faceAxis(pair, true, alignedFace(pair.a, -n));
+  const FaceAxis on_b = faceAxis(pair, false, alignedFace(pair.b, n));
+  const FaceAxis face = chooseFace(pair, on_a, on_b);
+  if (!tryFaces(pair, face, face.is_on_a ? on_b : on_a, best))
   {
-    return;
-  }
-  const int first = pair.manifold.count;
-  addSimplexContact(pair, closest, n);
-  if (angle < LOOK_AHEAD_ANGLE)
-  {
-    const int found = pair.manifold.count;
-    clipAgainstFace(pair, face);
-    dropDuplicates(pair, first, found);
+    addFeatureContacts(pair, closest, n, best, face);
   }
 }
 
@@ -184,7 +216,7 @@ BoxAxes boxAxes(const CorePair& pair)
     {
       const Eigen::Vector3d cross = rotation.col(i).cross(Eigen::Vector3d::Unit(j));
       const double sine = cross.norm();
-      if (sine < FACE_ANGLE)
+      if (sine < PARALLEL_EDGES)
       {
         continue;  // parallel edges: the face normals do
       }
@@ -203,49 +235,47 @@ BoxAxes boxAxes(const CorePair& pair)
   return axes;
 }
 
+/// @return whether the crossing of the two edges is within both: then they are the closest features
+bool addBoxEdges(const CorePair& pair, const BoxAxes& axes)
+{
+  Eigen::Vector3d point;
+  const int corner_a = pair.a.support(-axes.edge_normal, point);
+  const int corner_b = pair.b.support(axes.edge_normal, point);
+  const EdgeEnds on_a{corner_a & ~(1 << axes.edge_a), corner_a | (1 << axes.edge_a)};
+  const EdgeEnds on_b{corner_b & ~(1 << axes.edge_b), corner_b | (1 << axes.edge_b)};
+  const Eigen::Vector3d start_a = pair.a.vertex(on_a.first);
+  const Eigen::Vector3d start_b = pair.b.vertex(on_b.first);
+  const LineParameters line =
+      closestOnLines(start_a, pair.a.vertex(on_a.second) - start_a, start_b, pair.b.vertex(on_b.second) - start_b);
+  if (std::min(line.s, line.t) < 0.0 || std::max(line.s, line.t) > 1.0)
+  {
+    return false;
+  }
+  addEdgeContacts(pair, on_a, on_b, axes.edge_normal);
+  return true;
+}
+
 void collideBoxes(const CorePair& pair)
 {
   const BoxAxes axes = boxAxes(pair);
   const FaceAxis face = chooseFace(pair, axes.face_a, axes.face_b);
-  if (std::max(axes.edge_separation, std::max(axes.face_a.separation, axes.face_b.separation)) > pair.margin)
+  const double best = std::max(axes.edge_separation, std::max(axes.face_a.separation, axes.face_b.separation));
+  if (best > pair.margin || tryFaces(pair, face, face.is_on_a ? axes.face_b : axes.face_a, best))
   {
     return;
   }
-  const bool is_edge = axes.edge_separation > face.separation + FACE_PREFERENCE * pair.size &&
-                       angleBetween(axes.edge_normal, face.normal) > FACE_ANGLE;
-  if (!is_edge && clipAgainstFace(pair, face))
+  if (axes.edge_separation == best && addBoxEdges(pair, axes))
   {
+    addLookAhead(pair, face, axes.edge_normal, 0);
     return;
-  }
-  if (is_edge)
-  {
-    Eigen::Vector3d point;
-    const int corner_a = pair.a.support(-axes.edge_normal, point);
-    const int corner_b = pair.b.support(axes.edge_normal, point);
-    const EdgeEnds on_a{corner_a & ~(1 << axes.edge_a), corner_a | (1 << axes.edge_a)};
-    const EdgeEnds on_b{corner_b & ~(1 << axes.edge_b), corner_b | (1 << axes.edge_b)};
-    const Eigen::Vector3d start_a = pair.a.vertex(on_a.first);
-    const Eigen::Vector3d start_b = pair.b.vertex(on_b.first);
-    const LineParameters line =
-        closestOnLines(start_a, pair.a.vertex(on_a.second) - start_a, start_b, pair.b.vertex(on_b.second) - start_b);
-    if (std::min(line.s, line.t) >= 0.0 && std::max(line.s, line.t) <= 1.0)
-    {
-      addEdgeContacts(pair, on_a, on_b, axes.edge_normal);
-      if (angleBetween(axes.edge_normal, face.normal) < LOOK_AHEAD_ANGLE)
-      {
-        const int found = pair.manifold.count;
-        clipAgainstFace(pair, face);
-        dropDuplicates(pair, 0, found);
-      }
-      return;
-    }
   }
   // The closest features are a vertex and an edge or vertex, beside the faces: the boxes are apart.
   ClosestPoints closest;
   const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
-  if (separation(pair.a, pair.b, n) <= pair.margin)
+  const double distance = separation(pair.a, pair.b, n);
+  if (distance <= pair.margin)
   {
-    addSimplexContact(pair, closest, n);
+    addFeatureContacts(pair, closest, n, distance, face);
   }
 }
 
@@ -255,9 +285,29 @@ void collideThin(const CorePair& pair)
   const Eigen::Vector3d between = pair.a.translation - pair.b.translation;
   const Eigen::Vector3d fallback =
       between.squaredNorm() > 0.0 ? Eigen::Vector3d(between.normalized()) : Eigen::Vector3d::UnitZ();
-  addEdgeContacts(pair, {0, lastVertex(pair.a)}, {0, lastVertex(pair.b)}, fallback);
+  addEdgeContacts(pair, {0, lastVertex(pair.a)}, {0, lastVertex(pair.b)}, fallback, false);
 }
 }  // namespace
+
+void addSupportContact(const CorePair& pair, const Eigen::Vector3d& n)
+{
+  Eigen::Vector3d low_a;
+  Eigen::Vector3d high_b;
+  const int vertex_a = pair.a.exactSupport(-n, low_a);
+  const int vertex_b = pair.b.exactSupport(n, high_b);
+  pair.add(low_a, high_b, n, makeFeature(FeatureKind::VERTEX, std::max(vertex_a, 0)),
+           makeFeature(FeatureKind::VERTEX, std::max(vertex_b, 0)));
+}
+
+double deepestGap(const CorePair& pair, int first)
+{
+  double deepest = std::numeric_limits<double>::infinity();
+  for (int k = first; k < pair.manifold.count; ++k)
+  {
+    deepest = std::min(deepest, pair.manifold.points[k].gap);
+  }
+  return deepest;
+}
 
 void dropDuplicates(const CorePair& pair, int first, int found)
 {
@@ -265,9 +315,13 @@ void dropDuplicates(const CorePair& pair, int first, int found)
   int count = found;
   for (int k = found; k < pair.manifold.count; ++k)
   {
-    const bool is_new = std::none_of(points.begin() + first, points.begin() + found,
-                                     [&](const PairContact& other)
-                                     { return (other.position - points[k].position).norm() < 1e-2 * pair.size; });
+    const bool is_new =
+        std::none_of(points.begin() + first, points.begin() + found,
+                     [&](const PairContact& other)
+                     {
+                       return (other.feature_a == points[k].feature_a && other.feature_b == points[k].feature_b) ||
+                              (other.position - points[k].position).norm() < 1e-2 * pair.size;
+                     });
     if (is_new)
     {
       points[count++] = points[k];
@@ -326,9 +380,7 @@ void collideRounded(const ConvexShape& a, const ConvexShape& b, const Eigen::Iso
   }
   else
   {
-    ClosestPoints closest;
-    const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
-    collideAlong(pair, n, closest);
+    collideAlong(pair);
   }
   reduceAcross(pair);
 }
