@@ -8,6 +8,7 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double DEEP = 1e-3;  // times the size: overlap that no simulation step leaves behind
 constexpr std::size_t MAX_BRUTE_FORCE = 24;  // beyond, climbing along the edges is faster
 
 int climb(const Polyhedron& core, const Eigen::Vector3d& direction)
@@ -168,6 +169,36 @@ Eigen::Vector3d firstDirection(const CoreView& a, const CoreView& b)
   }
   return isSolid(a) && !isSolid(b) ? Eigen::Vector3d(-wayOut(a, b.interior())) : wayOut(b, a.interior());
 }
+
+/// Deep overlap has many local maxima: the best of all face normals, caps and the direction given.
+Eigen::Vector3d bestStart(const CoreView& a, const CoreView& b, const Eigen::Vector3d& start)
+{
+  Eigen::Vector3d best = start;
+  double largest = separation(a, b, start);
+  const auto offer = [&](const Eigen::Vector3d& n)
+  {
+    const double other = separation(a, b, n);
+    if (other > largest)
+    {
+      largest = other;
+      best = n;
+    }
+  };
+  for (const CoreView* view : {&a, &b})
+  {
+    const double sign = view == &a ? -1.0 : 1.0;
+    for (const Polyhedron::Face& face : view->core().faces)
+    {
+      offer(sign * (view->rotation * face.normal));
+    }
+    if (view->shape->kind == ShapeKind::CYLINDER)
+    {
+      offer(view->rotation.col(2));
+      offer(-view->rotation.col(2));
+    }
+  }
+  return best;
+}
 }  // namespace
 
 Eigen::Vector3d separatingDirection(const CoreView& a, const CoreView& b, ClosestPoints& closest)
@@ -184,6 +215,10 @@ Eigen::Vector3d separatingDirection(const CoreView& a, const CoreView& b, Closes
     return is_point(a) ? wayOut(b, a.translation) : Eigen::Vector3d(-wayOut(a, b.translation));
   }
   Eigen::Vector3d n = firstDirection(a, b);
+  if (separation(a, b, n) < -DEEP * size)
+  {
+    n = bestStart(a, b, n);
+  }
   for (int round = 0; round < 20; ++round)
   {
     CoreView moved = a;

@@ -15,7 +15,7 @@ constexpr double OVER_FLAT = 1e-9;
 constexpr double FLAT_PREFERENCE_ROUND = 1e-13;
 constexpr double OVER_FLAT_ROUND = 1e-13;
 constexpr double LOOK_AHEAD_ANGLE = 0.1;
-constexpr double PARALLEL = 0.1;  // sine up to which the ends of the overlap of two lines are look-ahead contacts
+constexpr double PARALLEL = 0.1;  // angle up to which lines along each other bring the ends of their overlap
 
 void collideSphere(const ConvexShape& cylinder, const ConvexShape& sphere, const Eigen::Isometry3d& a_in_b,
                    double margin, Manifold& manifold)
@@ -109,40 +109,31 @@ bool tryFlat(const CorePair& pair, const FlatAxis& flat, double best)
   return false;
 }
 
-/// Lines along each other on the sides: the ends of the overlap, and the crossing.
-void addSideContacts(const CorePair& pair, const CurveContact& curve)
+void addCurve(const CorePair& pair, const CurveContact& curve)
 {
-  CorePair lines = pair;
-  lines.radius_a = pair.a.shape->radius;
-  lines.radius_b = pair.b.shape->kind == ShapeKind::CYLINDER ? pair.b.shape->radius : pair.radius_b;
-  addEdgeContacts(lines, {0, 1}, curve.edge_b, curve.normal);
+  pair.add(curve.point_a, curve.point_b, curve.normal, curve.feature_a, curve.feature_b);
 }
 
-double lineSine(const CorePair& pair, const CurveContact& curve)
-{
-  const Eigen::Vector3d line = pair.b.vertex(curve.edge_b.second) - pair.b.vertex(curve.edge_b.first);
-  return CylinderView{pair.a}.sine(line.normalized());
-}
-
-void addCurveContacts(const CorePair& pair, const CurveContact& curve, const FlatAxis& flat)
+/// The closest pair; where lines lie along each other on the sides, the ends of their overlap; then look-ahead points.
+void addCurveContacts(const CorePair& pair, const CurveContacts& curves, const FlatAxis& flat)
 {
   const int first = pair.manifold.count;
-  if (curve.is_side)
+  const CurveContact& best = curves.best;
+  const bool is_lying = std::abs(pair.a.rotation.col(2).dot(best.normal)) < PARALLEL;
+  if (!best.is_crossing || curves.end_count == 0)
   {
-    addSideContacts(pair, curve);
+    addCurve(pair, best);
   }
-  else
+  for (int k = 0; k < curves.end_count && is_lying; ++k)
   {
-    pair.add(curve.point_a, curve.point_b, curve.normal, curve.feature_a, curve.feature_b);
-    const bool is_lying = std::abs(pair.a.rotation.col(2).dot(curve.normal)) < PARALLEL;
-    if (curve.has_line && is_lying && lineSine(pair, curve) < PARALLEL)
+    if (angleBetween(curves.ends[k].normal, best.normal) < PARALLEL)
     {
       const int found = pair.manifold.count;
-      addSideContacts(pair, curve);
+      addCurve(pair, curves.ends[k]);
       dropDuplicates(pair, first, found);
     }
   }
-  if (angleBetween(curve.normal, flat.normal) < LOOK_AHEAD_ANGLE)
+  if (angleBetween(best.normal, flat.normal) < LOOK_AHEAD_ANGLE)
   {
     const int found = pair.manifold.count;
     addFlatContacts(pair, flat);
@@ -168,14 +159,14 @@ void collideCylinder(const ConvexShape& a, const ConvexShape& b, const Eigen::Is
   }
   const FlatAxis on_b = flatOfB(pair, n);
   const FlatAxis on_a = capAxis(pair, true, n);
-  const CurveContact curve = bestCurveContact(pair, n, closest);
-  const double best = std::max(curve.separation, std::max(on_a.separation, on_b.separation));
+  const CurveContacts curves = findCurveContacts(pair, n, closest);
+  const double best = std::max(curves.best.separation, std::max(on_a.separation, on_b.separation));
   const bool prefers_a = on_a.separation > on_b.separation + FLAT_PREFERENCE * pair.size;
   const FlatAxis& first = prefers_a ? on_a : on_b;
   const FlatAxis& second = prefers_a ? on_b : on_a;
   if (best <= margin + pair.radii() && !tryFlat(pair, first, best) && !tryFlat(pair, second, best))
   {
-    addCurveContacts(pair, curve, first);
+    addCurveContacts(pair, curves, first);
   }
   reduceAcross(pair);
 }

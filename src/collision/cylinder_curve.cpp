@@ -10,12 +10,13 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double NO_DIRECTION = 1e-10;  // times the size
+constexpr double PARALLEL_LINES = 1e-7;  // sine below which the crossing of two lines is noise
 
 struct Search
 {
   const CorePair& pair;
   const Eigen::Vector3d& hint;
-  CurveContact best;
+  CurveContacts found;
 
   /// Takes a stationary pair; its direction counts by the separation of the whole shapes along it.
   void offer(CurveContact contact)
@@ -27,23 +28,30 @@ struct Search
     }
     contact.normal *= (contact.normal.dot(hint) < 0.0 ? -1.0 : 1.0) / length;
     contact.separation = separation(pair.a, pair.b, contact.normal);
-    if (contact.separation > best.separation + 1e-15 * pair.size)
+    contact.point_a -= (contact.is_on_axis_a ? pair.a.shape->radius : 0.0) * contact.normal;
+    contact.point_b += (contact.is_on_axis_b ? pair.b.shape->radius : 0.0) * contact.normal;
+    if (contact.is_end && found.end_count < static_cast<int>(found.ends.size()))
     {
-      best = contact;
-      if (contact.is_on_axis_a)
-      {
-        best.point_a -= pair.a.shape->radius * contact.normal;
-      }
-      if (contact.has_line && pair.b.shape->kind == ShapeKind::CYLINDER)
-      {
-        best.point_b += pair.b.shape->radius * contact.normal;
-      }
+      found.ends[found.end_count++] = contact;
+    }
+    if (contact.separation > found.best.separation + 1e-15 * pair.size)
+    {
+      found.best = contact;
     }
   }
 
   Eigen::Vector3d direction(const Eigen::Vector3d& difference) const
   {
     return difference.norm() > NO_DIRECTION * pair.size ? difference : hint;
+  }
+
+  /// Whether a parameter is within 0 and 1, ends included.
+  static bool isWithin(double t) { return t >= -SIDE_TOLERANCE && t <= 1.0 + SIDE_TOLERANCE; }
+  /// Whether a point is between the planes of the caps.
+  bool isBetweenCaps(const CoreView& view, const Eigen::Vector3d& point) const
+  {
+    const double height = view.rotation.col(2).dot(point - view.translation);
+    return std::abs(height) <= view.shape->half_length + SIDE_TOLERANCE * pair.size;
   }
 };
 
@@ -72,6 +80,7 @@ void offerVertex(Search& search, const CylinderView& a, int vertex)
   side.normal = radial.norm() > 0.0 ? Eigen::Vector3d(-radial) : search.hint;
   side.point_a = point - radial;
   side.is_on_axis_a = true;
+  side.is_end = search.isBetweenCaps(a.view, point);
   side.feature_a = sideFeature(0);
   side.feature_b = vertexOf(vertex);
   search.offer(side);
@@ -82,7 +91,7 @@ Eigen::Vector3d acrossLines(const Search& search, const Eigen::Vector3d& d, cons
                             const Eigen::Vector3d& difference)
 {
   const Eigen::Vector3d cross = d.cross(e);
-  if (cross.norm() > 1e-7 * d.norm() * e.norm())
+  if (cross.norm() > PARALLEL_LINES * d.norm() * e.norm())
   {
     return cross;
   }
@@ -96,6 +105,7 @@ void offerLine(Search& search, const CylinderView& a, const EdgeEnds& ends, Feat
   const Eigen::Vector3d start = search.pair.b.vertex(ends.first);
   const Eigen::Vector3d direction = search.pair.b.vertex(ends.second) - start;
   const double length_squared = direction.squaredNorm();
+  const bool is_cylinder = search.pair.b.shape->kind == ShapeKind::CYLINDER;
   for (int cap : {0, 1})
   {
     const Circle circle = a.rim(cap);
@@ -107,8 +117,8 @@ void offerLine(Search& search, const CylinderView& a, const EdgeEnds& ends, Feat
     contact.normal = acrossLines(search, circle.tangent(angle), direction, contact.point_a - contact.point_b);
     contact.feature_a = lowestRimFeature(cap);
     contact.feature_b = feature_b;
-    contact.has_line = true;
-    contact.edge_b = ends;
+    contact.is_on_axis_b = is_cylinder;
+    contact.is_end = Search::isWithin(t);
     search.offer(contact);
   }
   CurveContact side;
@@ -120,9 +130,8 @@ void offerLine(Search& search, const CylinderView& a, const EdgeEnds& ends, Feat
   side.normal = acrossLines(search, axis, direction, a.view.translation - start);
   side.feature_a = sideFeature(0);
   side.feature_b = feature_b;
-  side.is_side = true;
-  side.has_line = true;
-  side.edge_b = ends;
+  side.is_on_axis_b = is_cylinder;
+  side.is_crossing = axis.cross(direction).norm() < PARALLEL_LINES * direction.norm();
   search.offer(side);
 }
 
@@ -155,6 +164,7 @@ void offerRimOfB(Search& search, const CylinderView& a, const CylinderView& b, i
   contact.normal = search.direction(-radial);
   contact.point_a = contact.point_b - radial;
   contact.is_on_axis_a = true;
+  contact.is_end = search.isBetweenCaps(a.view, contact.point_b);
   contact.feature_a = sideFeature(0);
   contact.feature_b = lowestRimFeature(cap);
   search.offer(contact);
@@ -178,9 +188,9 @@ void offerRims(Search& search, const CylinderView& a, const CylinderView& b, int
 }
 }  // namespace
 
-CurveContact bestCurveContact(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest)
+CurveContacts findCurveContacts(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest)
 {
-  Search search{pair, n, CurveContact()};
+  Search search{pair, n, CurveContacts()};
   const CylinderView a{pair.a};
   if (pair.b.shape->kind == ShapeKind::CYLINDER)
   {
@@ -198,19 +208,21 @@ CurveContact bestCurveContact(const CorePair& pair, const Eigen::Vector3d& n, co
     offerVertexOrEdge(search, a, closest);
   }
   // The features found must carry the direction GJK found; else its supporting points are the contact.
+  CurveContact& best = search.found.best;
   const double at_hint = separation(pair.a, pair.b, n);
-  const double gap = search.best.normal.dot(search.best.point_a - search.best.point_b);
+  const double gap = best.normal.dot(best.point_a - best.point_b);
   const double tolerance = 1e-9 * pair.size;
-  if (search.best.separation < at_hint - tolerance || std::abs(gap - search.best.separation) > tolerance)
+  const bool misses_hint = best.separation < at_hint - tolerance;
+  if (misses_hint || std::abs(gap - best.separation) > tolerance)
   {
     CurveContact support;
-    support.normal = search.best.separation < at_hint - tolerance ? n : search.best.normal;
-    support.separation = std::max(at_hint, search.best.separation);
+    support.normal = misses_hint ? n : best.normal;
+    support.separation = std::max(at_hint, best.separation);
     pair.a.exactSupport(-support.normal, support.point_a);
     pair.b.exactSupport(support.normal, support.point_b);
-    return support;
+    best = support;
   }
-  return search.best;
+  return search.found;
 }
 
 }  // namespace frictional_contact_sim

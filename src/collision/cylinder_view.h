@@ -3,6 +3,8 @@
  * @file cylinder_view.h
  * @brief A cylinder in b's frame: caps, rims, generators. Shared by the files on cylinder contacts.
  */
+#include <array>
+
 #include "core_pair.h"
 #include "curve_contact.h"
 #include "cylinder_feature.h"
@@ -55,26 +57,33 @@ struct FlatAxis
  */
 bool addFlatContacts(const CorePair& pair, const FlatAxis& axis);
 
-/**
- * @brief The contact of rim or side of cylinder a with vertices, edges, rim or side of b near the direction n: of all
- * stationary pairs the one of largest separation.
- * @param closest its vertices of b are the candidates
- * @param separation of that pair, for comparison with flat axes
- * @return candidate, not yet added
- */
+/// A stationary pair of a point of the rim or side of cylinder a and a point of b.
 struct CurveContact
 {
-  double separation = -std::numeric_limits<double>::infinity();
+  double separation = -std::numeric_limits<double>::infinity();  ///< s(n) of the whole shapes
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d point_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
   Feature feature_a = 0;
   Feature feature_b = 0;
-  bool is_side = false;  ///< the side of a against a line of b: may be parallel
   bool is_on_axis_a = false;  ///< point_a still on the axis: moved to the side along the normal
-  bool has_line = false;  ///< edge_b is a line of b
-  EdgeEnds edge_b{0, 0};
+  bool is_on_axis_b = false;
+  bool is_crossing = false;  ///< of two nearly parallel lines: its place is noise
+  bool is_end = false;  ///< end of a line on the side of the other
 };
-CurveContact bestCurveContact(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest);
+
+/// Stationary pairs near a direction.
+struct CurveContacts
+{
+  CurveContact best;  ///< the one of largest separation
+  std::array<CurveContact, 16> ends;  ///< for lines along each other: where the overlap ends
+  int end_count = 0;
+};
+
+/**
+ * @brief Contacts of rim or side of cylinder a with vertices, edges, rim or side of b near the direction n.
+ * @param closest its vertices of b are the candidates
+ */
+CurveContacts findCurveContacts(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest);
 
 }  // namespace frictional_contact_sim
