@@ -6,9 +6,6 @@
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>
 
-#include <chrono>
-#include <thread>
-
 namespace frictional_contact_sim
 {
 using XmlRpc::XmlRpcClient;
@@ -16,8 +13,8 @@ using XmlRpc::XmlRpcValue;
 
 namespace
 {
-constexpr std::chrono::milliseconds CALL_TIMEOUT(500);
-constexpr std::chrono::microseconds CALL_POLL(50);
+constexpr double CALL_TIMEOUT = 0.5;  // [s]
+constexpr double CALL_SLICE = 0.02;  // between two looks at a shutdown [s]
 
 /** @brief A call that neither hangs on a stopped node nor keeps a shutdown waiting. */
 bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, XmlRpcValue& response)
@@ -26,16 +23,16 @@ bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, 
   {
     return false;
   }
-  const auto deadline = std::chrono::steady_clock::now() + CALL_TIMEOUT;
-  while (ros::ok() && std::chrono::steady_clock::now() < deadline)
+  XmlRpc::XmlRpcDispatch dispatch;
+  dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
+  bool done = false;
+  for (double waited = 0.0; ros::ok() && !done && waited < CALL_TIMEOUT; waited += CALL_SLICE)
   {
-    if (client.executeCheckDone(response))
-    {
-      return !client.isFault();
-    }
-    std::this_thread::sleep_for(CALL_POLL);
+    dispatch.work(CALL_SLICE);
+    done = client.executeCheckDone(response);
   }
-  return false;
+  dispatch.removeSource(&client);
+  return done && !client.isFault();
 }
 
 /** @brief [topic, [[connection, bytes, messages, drops, ...], ...]] of getBusStats: sum of one column. */
@@ -66,30 +63,32 @@ const std::map<std::string, int>& DeliveryMonitor::dropped() const
   return dropped_;
 }
 
-bool DeliveryMonitor::ask(const std::string& node, const char* method, XmlRpcValue& response)
+/** @brief Value of an answer: [1, "", value] by the slave API, but roscpp answers getBusStats with the value alone. */
+bool DeliveryMonitor::ask(const std::string& node, const char* method, XmlRpcValue& value)
 {
   XmlRpcClient* remote = client(node);
   XmlRpcValue request;
+  XmlRpcValue response;
   request[0] = ros::this_node::getName();
   if (remote == nullptr || !call(*remote, method, request, response) || response.getType() != XmlRpcValue::TypeArray ||
-      response.size() != 3)
+      response.size() < 2)
   {
     clients_.erase(node);
     return false;
   }
+  value = response[0].getType() == XmlRpcValue::TypeInt ? response[2] : response;
   return true;
 }
 
 /** @brief getBusInfo: [connection, node, direction, transport, topic, ...] of every connection. */
 void DeliveryMonitor::readConnections()
 {
-  XmlRpcValue response;
+  XmlRpcValue info;
   connections_.clear();
-  if (!ask(ros::this_node::getName(), "getBusInfo", response))
+  if (!ask(ros::this_node::getName(), "getBusInfo", info))
   {
     return;
   }
-  XmlRpcValue& info = response[2];
   for (int i = 0; info.getType() == XmlRpcValue::TypeArray && i < info.size(); ++i)
   {
     connections_[static_cast<int>(info[i][0])] = static_cast<std::string>(info[i][1]);
@@ -99,12 +98,12 @@ void DeliveryMonitor::readConnections()
 bool DeliveryMonitor::sentCounts(std::map<std::string, Counts>& sent)
 {
   // getBusStats' first part, the publications: [topic, [[connection, bytes, bytes, messages, ...], ...]]
-  XmlRpcValue response;
-  if (!ask(ros::this_node::getName(), "getBusStats", response))
+  XmlRpcValue stats;
+  if (!ask(ros::this_node::getName(), "getBusStats", stats))
   {
     return false;
   }
-  XmlRpcValue& publications = response[2][0];
+  XmlRpcValue& publications = stats[0];
   for (int i = 0; publications.getType() == XmlRpcValue::TypeArray && i < publications.size(); ++i)
   {
     const std::string topic = publications[i][0];
@@ -151,12 +150,12 @@ XmlRpcClient* DeliveryMonitor::client(const std::string& node)
 
 bool DeliveryMonitor::receivedCounts(const std::string& node, Counts& received)
 {
-  XmlRpcValue response;
-  if (!ask(node, "getBusStats", response))
+  XmlRpcValue stats;
+  if (!ask(node, "getBusStats", stats))
   {
     return false;
   }
-  XmlRpcValue& subscriptions = response[2][1];
+  XmlRpcValue& subscriptions = stats[1];
   for (int i = 0; subscriptions.getType() == XmlRpcValue::TypeArray && i < subscriptions.size(); ++i)
   {
     const std::string topic = subscriptions[i][0];

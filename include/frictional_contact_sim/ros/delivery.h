@@ -38,7 +38,7 @@ public:
 private:
   using Counts = std::map<std::string, int>;  // messages by topic
 
-  bool ask(const std::string& node, const char* method, XmlRpc::XmlRpcValue& response);
+  bool ask(const std::string& node, const char* method, XmlRpc::XmlRpcValue& value);
   void readConnections();
   bool sentCounts(std::map<std::string, Counts>& sent);
   bool receivedCounts(const std::string& node, Counts& received);
