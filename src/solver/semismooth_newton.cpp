@@ -84,10 +84,12 @@ void SemismoothNewton::prepare(const DelassusProblem& problem)
   const int count = problem.W.blocks();
   for (Eigen::VectorXd* vector : {&weight_, &u_, &u_alpha_, &f_, &step_, &step_velocity_, &trial_r_, &trial_u_})
     vector->resize(rows);
+  rhs_.resize(rows);
   rho_normal_.resize(count);
   rho_tangential_.resize(count);
   by_u_.resize(9 * static_cast<std::size_t>(count));
   by_r_.resize(9 * static_cast<std::size_t>(count));
+  lu_.reserve(problem.W.isDense() ? rows : std::min(rows, DENSE_LIMIT));
   active_.reserve(static_cast<std::size_t>(rows));
   position_.resize(static_cast<std::size_t>(rows));
   for (int i = 0; i < count; ++i)
@@ -137,7 +139,7 @@ double SemismoothNewton::evaluate(const DelassusProblem& problem, const Eigen::V
   return merit;
 }
 
-bool SemismoothNewton::direction(const DelassusProblem& problem, const Eigen::VectorXd& r)
+bool SemismoothNewton::direction(const DelassusProblem& problem)
 {
   // Laws with A_i = 0 and B_i = -I (open contacts, clipped rows) have dr_i = f_i: they leave the system.
   active_.clear();
@@ -164,30 +166,20 @@ bool SemismoothNewton::direction(const DelassusProblem& problem, const Eigen::Ve
   const auto size = static_cast<Eigen::Index>(active_.size());
   if (size == 0)
     return true;
-  if (!problem.W.isDense() && size > DENSE_LIMIT)
-  {
-    if (!solveSparse(problem))
-      return false;
-  }
-  else
-  {
-    assembleDense(problem);
-    lu_.compute(jacobian_);
-    rhs_ = lu_.solve(rhs_);
-  }
-  if (!rhs_.allFinite())
+  if (!problem.W.isDense() && size > DENSE_LIMIT ? !solveSparse(problem) : !solveDense(problem))
+    return false;
+  if (!rhs_.head(size).allFinite())
     return false;
   for (Eigen::Index k = 0; k < size; ++k)
     step_[active_[static_cast<std::size_t>(k)]] = rhs_[k];
-  static_cast<void>(r);
   return true;
 }
 
-void SemismoothNewton::assembleDense(const DelassusProblem& problem)
+bool SemismoothNewton::solveDense(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
-  jacobian_.setZero(size, size);
-  rhs_.setZero(size);
+  Eigen::Map<Eigen::MatrixXd> jacobian = lu_.start(static_cast<int>(size));
+  rhs_.head(size).setZero();
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int row = problem.W.offset(i);
@@ -207,7 +199,7 @@ void SemismoothNewton::assembleDense(const DelassusProblem& problem)
                            for (int k = 0; k < d; ++k)
                              sum += A[d * a + k] * w[k * stride];
                            if (target >= 0)
-                             jacobian_(first + a, target) = sum;
+                             jacobian(first + a, target) = sum;
                            else
                              rhs_[first + a] -= sum * step_[column];
                          }
@@ -216,16 +208,20 @@ void SemismoothNewton::assembleDense(const DelassusProblem& problem)
     {
       rhs_[first + a] -= f_[row + a];
       for (int b = 0; b < d; ++b)
-        jacobian_(first + a, first + b) += B[d * a + b] + alpha_ * A[d * a + b] * weight_[row + b];
+        jacobian(first + a, first + b) += B[d * a + b] + alpha_ * A[d * a + b] * weight_[row + b];
     }
   }
+  if (!lu_.factor())
+    return false;
+  lu_.solve(rhs_.head(size));
+  return true;
 }
 
 bool SemismoothNewton::solveSparse(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
   sparse_->triplets.clear();
-  rhs_.setZero(size);
+  rhs_.head(size).setZero();
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int row = problem.W.offset(i);
@@ -262,7 +258,7 @@ bool SemismoothNewton::solveSparse(const DelassusProblem& problem)
   sparse_->lu.compute(sparse_->matrix);
   if (sparse_->lu.info() != Eigen::Success)
     return false;
-  rhs_ = sparse_->lu.solve(rhs_);
+  rhs_.head(size) = sparse_->lu.solve(rhs_.head(size));
   return true;
 }
 
@@ -326,7 +322,7 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
       return Inner::OUT_OF_BUDGET;
     ++result.iterations;
     history_[history_count_++ % options_.line_search_memory] = merit;
-    if (!direction(problem, r))
+    if (!direction(problem))
       return Inner::FAILED;
     const double t = lineSearch(problem, r);
     if (t == 0.0)

@@ -19,10 +19,10 @@
  * below a tenth of the proximal perturbation.
  */
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <memory>
 
 #include "frictional_contact_sim/math/contact_functions.h"
+#include "frictional_contact_sim/solver/dense_lu.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -76,8 +76,8 @@ private:
   };
   void prepare(const DelassusProblem& problem);
   double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
-  bool direction(const DelassusProblem& problem, const Eigen::VectorXd& r);
-  void assembleDense(const DelassusProblem& problem);
+  bool direction(const DelassusProblem& problem);
+  bool solveDense(const DelassusProblem& problem);
   bool solveSparse(const DelassusProblem& problem);
   Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
   double lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r);
@@ -95,9 +95,8 @@ private:
   std::vector<double> by_u_, by_r_;  ///< A_i and B_i, 9 numbers a law, row-major
   std::vector<int> active_;  ///< active row -> row
   std::vector<int> position_;  ///< row -> active row or -1
-  Eigen::MatrixXd jacobian_;
   Eigen::VectorXd rhs_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  DenseLu lu_;
   double best_value_ = 0.0;
   double history_[8] = {};
   int history_count_ = 0;
