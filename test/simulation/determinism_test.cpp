@@ -75,10 +75,10 @@ TEST(AllocationTest, StandingQuadrupedStepsWithoutAllocating)
   Simulator simulator(quadruped());
   for (int i = 0; i < 1000; ++i)
     simulator.step();
-  const long before = allocationCount();
+  const test_support::AllocationCounter counter;
   for (int i = 0; i < 100; ++i)
     simulator.step();
-  EXPECT_EQ(allocationCount() - before, 0);
+  EXPECT_EQ(counter.count(), 0);
 }
 }  // namespace
 }  // namespace frictional_contact_sim
