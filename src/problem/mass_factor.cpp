@@ -2,7 +2,8 @@
 
 #include <suitesparse/amd.h>
 // LDL's header forgets to say that it is C.
-extern "C" {
+extern "C"
+{
 #include <suitesparse/ldl.h>
 }
 
@@ -36,8 +37,22 @@ void MassFactor::analyse(const SparseRows& M)
   // M is symmetric with both triangles stored, so its compressed rows are its compressed columns.
   if (amd_order(size, outer_.data(), inner_.data(), permutation_.data(), nullptr, nullptr) < AMD_OK)
     throw std::invalid_argument("M: pattern is not a valid compressed matrix");
-  ldl_symbolic(size, outer_.data(), inner_.data(), column_begin_.data(), parent_.data(), counts_.data(), flags_.data(),
-               permutation_.data(), inverse_permutation_.data());
+  const auto symbolic = [&]
+  {
+    ldl_symbolic(size, outer_.data(), inner_.data(), column_begin_.data(), parent_.data(), counts_.data(),
+                 flags_.data(), permutation_.data(), inverse_permutation_.data());
+    return column_begin_[count];
+  };
+  // A tree numbered from its root has no fill when eliminated from its leaves; AMD, approximate, may miss that.
+  const int amd_fill = symbolic();
+  const std::vector<int> amd_permutation = permutation_;
+  for (std::size_t k = 0; k < count; ++k)
+    permutation_[k] = size - 1 - static_cast<int>(k);
+  if (symbolic() > amd_fill)
+  {
+    permutation_ = amd_permutation;
+    symbolic();
+  }
   const auto fill = static_cast<std::size_t>(column_begin_[count]);
   row_indices_.resize(fill);
   values_.resize(fill);

@@ -1,0 +1,172 @@
+#include "frictional_contact_sim/problem/residual.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "frictional_contact_sim/problem/law_functions.h"
+#include "support/hand_problems.h"
+#include "support/validator.h"
+
+using namespace frictional_contact_sim;
+using namespace frictional_contact_sim::test_support;
+
+namespace
+{
+const Eigen::Matrix3d W = (Eigen::Matrix3d() << 2.0, 0.3, -0.2, 0.3, 1.5, 0.1, -0.2, 0.1, 1.0).finished();
+constexpr double MU = 0.5;
+
+/** A local one-contact problem that (u, r) solves: q = u - W r. */
+DelassusProblem oneContact(const Eigen::Vector3d& u, const Eigen::Vector3d& r)
+{
+  return localProblem(W, u - W * r, {{LawType::COULOMB_3D, MU}});
+}
+
+/** A random answer, not a solution, with every law. */
+IncrementalProblem everyLaw(std::uint32_t seed)
+{
+  RandomProblemOptions options;
+  options.planar_contacts = 2;
+  options.unilateral = 2;
+  options.dry = 2;
+  options.bilaterals = 2;
+  options.moving_externals = true;
+  return randomProblem(options, seed);
+}
+
+Solution randomAnswer(const IncrementalProblem& problem, unsigned seed)
+{
+  std::srand(seed);
+  Solution solution;
+  solution.v = Eigen::VectorXd::Random(problem.velocities());
+  solution.r = Eigen::VectorXd::Random(problem.rows());
+  solution.lambda = Eigen::VectorXd::Random(problem.bilaterals());
+  return solution;
+}
+}  // namespace
+
+TEST(ResidualTest, IsZeroOnTakeOffStickingAndSlidingInClosedForm)
+{
+  // Round-off of q = u - W r and back: a few eps.
+  EXPECT_LT(evaluateResidual(oneContact({0.4, -1.0, 2.0}, {0, 0, 0}), Eigen::Vector3d(0, 0, 0)), 1e-15);
+  EXPECT_LT(evaluateResidual(oneContact({0, 0, 0}, {2.0, 0.6, -0.5}), Eigen::Vector3d(2.0, 0.6, -0.5)), 1e-15);
+  EXPECT_LT(evaluateResidual(oneContact({0, 3.0, -4.0}, {2.0, -0.6, 0.8}), Eigen::Vector3d(2.0, -0.6, 0.8)), 1e-15);
+}
+
+TEST(ResidualTest, IsNotZeroWhenSlidingFrictionPointsAlongTheMotion)
+{
+  EXPECT_GT(evaluateResidual(oneContact({0, 3.0, -4.0}, {2.0, 0.6, -0.8}), Eigen::Vector3d(2.0, 0.6, -0.8)), 0.1);
+}
+
+TEST(ResidualTest, HasTheValueOfItsDefinitionAtZeroImpulse)
+{
+  // r = 0, u = q = (-1, 0, 0): e = P_K(-u~) = 1 m/s, scale |q| = 1 m/s.
+  const DelassusProblem problem = localProblem(W, Eigen::Vector3d(-1, 0, 0), {{LawType::COULOMB_3D, MU}});
+  EXPECT_NEAR(evaluateResidual(problem, Eigen::Vector3d::Zero()), 1.0, 1e-15);
+}
+
+TEST(ResidualTest, OneDimensionalLawsVanishExactlyOnTheirGraphs)
+{
+  const struct
+  {
+    Law law;
+    double u, r;
+    bool on_graph;
+  } cases[] = {{{LawType::UNILATERAL, 0}, 0.0, 3.0, true},    {{LawType::UNILATERAL, 0}, 2.0, 0.0, true},
+               {{LawType::UNILATERAL, 0}, 2.0, 3.0, false},   {{LawType::UNILATERAL, 0}, -1.0, 0.0, false},
+               {{LawType::DRY_FRICTION, 1}, 0.0, 0.7, true},  {{LawType::DRY_FRICTION, 1}, 2.0, -1.0, true},
+               {{LawType::DRY_FRICTION, 1}, 2.0, 1.0, false}, {{LawType::DRY_FRICTION, 1}, -2.0, 1.0, true},
+               {{LawType::BILATERAL, 0}, 0.0, -5.0, true},    {{LawType::BILATERAL, 0}, 0.1, -5.0, false}};
+  for (const auto& item : cases)
+  {
+    const double error = naturalMapError(item.law, &item.u, &item.r, 0.37);
+    if (item.on_graph)
+      EXPECT_LT(error, 1e-15);
+    else
+      EXPECT_GT(error, 0.05);
+  }
+}
+
+TEST(ResidualTest, DoesNotDependOnTheUnits)
+{
+  // Length in mm (1e3), mass in g (1e3), time in ms (1e3): velocity x 1, impulse x 1e6 / ... any factors must cancel.
+  const IncrementalProblem problem = randomProblem({}, 3);
+  const Solution answer = randomAnswer(problem, 3);
+  const double velocity = 7.3, mass = 1.9e3;
+  IncrementalProblem scaled = problem;
+  scaled.M = problem.M * mass;
+  scaled.f = problem.f * (mass * velocity);
+  scaled.w = problem.w * velocity;
+  Solution other = answer;
+  other.v *= velocity;
+  other.r *= mass * velocity;
+  const GlobalResidual a = evaluateResidual(problem, answer), b = evaluateResidual(scaled, other);
+  EXPECT_NEAR(a.law, b.law, 1e-13 * a.law);
+  EXPECT_NEAR(a.dynamics, b.dynamics, 1e-13 * a.dynamics);
+}
+
+TEST(ResidualTest, DoesNotDependOnTheOrderOfContacts)
+{
+  std::srand(5);
+  const int contacts = 5;
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(3 * contacts, 3 * contacts);
+  const Eigen::MatrixXd delassus = A * A.transpose();
+  const Eigen::VectorXd q = Eigen::VectorXd::Random(3 * contacts), r = Eigen::VectorXd::Random(3 * contacts);
+  const std::vector<int> order = {3, 0, 4, 1, 2};
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(3 * contacts, 3 * contacts);
+  std::vector<Law> laws, permuted;
+  for (int i = 0; i < contacts; ++i)
+    laws.push_back({LawType::COULOMB_3D, 0.2 * (i + 1)});
+  for (int i = 0; i < contacts; ++i)
+  {
+    P.block<3, 3>(3 * i, 3 * order[static_cast<std::size_t>(i)]).setIdentity();
+    permuted.push_back(laws[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+  }
+  const double a = evaluateResidual(localProblem(delassus, q, laws), r);
+  const double b = evaluateResidual(localProblem(P * delassus * P.transpose(), P * q, permuted), P * r);
+  EXPECT_NEAR(a, b, 1e-13 * a);
+}
+
+TEST(ResidualTest, AgreesWithTheIndependentValidatorOnAnswersThatAreNotSolutions)
+{
+  for (std::uint32_t seed = 1; seed <= 20; ++seed)
+  {
+    const IncrementalProblem problem = everyLaw(seed);
+    const Solution answer = randomAnswer(problem, seed);
+    const GlobalResidual ours = evaluateResidual(problem, answer);
+    const Verdict theirs = validateAnswer(problem, answer.v, answer.r, answer.lambda);
+    // Two ways to the same numbers; M has a condition below 1e3.
+    EXPECT_NEAR(ours.law, theirs.law, 1e-11 * theirs.law);
+    EXPECT_NEAR(ours.dynamics, theirs.dynamics, 1e-11 * theirs.dynamics);
+    EXPECT_NEAR(ours.bilateral, theirs.bilateral, 1e-11 * theirs.bilateral);
+  }
+}
+
+TEST(ResidualTest, IsZeroWithoutRowsAndNotANumberIsNeverSmall)
+{
+  EXPECT_EQ(evaluateResidual(localProblem(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), {}), Eigen::VectorXd(0)), 0.0);
+  const DelassusProblem problem = oneContact({0, 0, 0}, {2.0, 0.6, -0.5});
+  const Eigen::Vector3d broken(2.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
+  EXPECT_FALSE(evaluateResidual(problem, broken) <= 1e30);
+}
+
+TEST(ResidualTest, LargestEigenvaluesAgreeWithTheirCharacteristicEquation)
+{
+  std::srand(11);
+  for (int k = 0; k < 200; ++k)
+  {
+    const Eigen::Matrix3d A = Eigen::Matrix3d::Random();
+    const Eigen::Matrix3d S = A * A.transpose();
+    const double lambda = largestEigenvalue(SquareMatrix<3>(S));
+    // lambda I - S is singular and positive semi-definite: its leading minors are not negative.
+    const Eigen::Matrix3d shifted = lambda * Eigen::Matrix3d::Identity() - S;
+    const double determinant = shifted(0, 0) * (shifted(1, 1) * shifted(2, 2) - shifted(1, 2) * shifted(2, 1)) -
+                               shifted(0, 1) * (shifted(1, 0) * shifted(2, 2) - shifted(1, 2) * shifted(2, 0)) +
+                               shifted(0, 2) * (shifted(1, 0) * shifted(2, 1) - shifted(1, 1) * shifted(2, 0));
+    EXPECT_NEAR(determinant, 0.0, 1e-13 * std::pow(1.0 + lambda, 3));
+    EXPECT_GE(shifted(0, 0), -1e-13);
+    EXPECT_GE(shifted(0, 0) * shifted(1, 1) - shifted(0, 1) * shifted(1, 0), -1e-13);
+  }
+}
