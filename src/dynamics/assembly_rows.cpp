@@ -52,6 +52,7 @@ StepAssembly::StepAssembly(std::vector<Robot>& robots, const CollisionWorld& wor
         if (i != j)
           mass_columns_[robot.v_offset + j].push_back(robot.v_offset + i);
       }
+  v_old_.resize(velocities_);
   for (std::vector<int>& columns : mass_columns_)
     std::sort(columns.begin(), columns.end());
 }
@@ -67,7 +68,6 @@ void StepAssembly::beginRows()
   joint_rows_.clear();
   mimic_rows_.clear();
   problem_.laws.clear();
-  v_old_.conservativeResize(velocities_);
   for (const Robot& robot : robots_)
     v_old_.segment(robot.v_offset, robot.model.nv) = robot.v;
 }

@@ -94,7 +94,7 @@ private:
   PairTable pairs_;
   int velocities_ = 0;
   int auxiliaries_ = 0;
-  Eigen::VectorXd v_old_;  ///< velocities_ + auxiliaries_
+  Eigen::VectorXd v_old_;  ///< velocities_: at the start of the step
   Eigen::VectorXd impulse_;  ///< generalized impulse of the guess
   Eigen::VectorXd scratch_;  ///< momentum without bias, robot by robot
   RowBuilder rows_h_;
