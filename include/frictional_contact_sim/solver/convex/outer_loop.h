@@ -1,0 +1,45 @@
+#pragma once
+/**
+ * @file outer_loop.h
+ * @brief What the outer loops around convex problems share: the best iterate, the stall rule, the inner tolerance.
+ */
+#include <Eigen/Core>
+#include <limits>
+
+#include "frictional_contact_sim/solver/solver.h"
+
+namespace frictional_contact_sim
+{
+class OuterLoop
+{
+public:
+  /** @param window iterations without the best residual falling by a tenth that count as a stall */
+  OuterLoop(double tolerance, int window, SolverResult& result)
+    : tolerance_(tolerance), window_(window), result_(result)
+  {
+  }
+
+  /**
+   * @brief Takes note of an iterate. @return true when the method should stop, with status and message set.
+   * @param residual E at r
+   */
+  bool record(double residual, const Eigen::VectorXd& r);
+  /** @brief Ends with the given status. The best iterate is kept. */
+  bool stop(SolverStatus status, const char* message);
+
+  /** @brief Relative tolerance of the next inner problem: accuracy times the last residual, not below tolerance / 10.
+   */
+  double innerTolerance(double accuracy) const;
+  double best() const { return best_; }
+
+private:
+  double tolerance_;
+  int window_;
+  SolverResult& result_;
+  double last_ = 1.0;
+  double best_ = std::numeric_limits<double>::infinity();
+  double window_best_ = std::numeric_limits<double>::infinity();
+  int since_ = 0;
+};
+
+}  // namespace frictional_contact_sim

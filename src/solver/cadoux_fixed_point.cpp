@@ -1,0 +1,75 @@
+#include "frictional_contact_sim/solver/cadoux_fixed_point.h"
+
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Times s is raised out of unqualified points before the run ends.
+constexpr int MAX_RAISES = 5;
+}  // namespace
+
+void CadouxOptions::validate() const
+{
+  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux.inner_accuracy", inner_accuracy, "in (0, 1)");
+  requireOption(relaxation > 0.0 && relaxation <= 1.0, "cadoux.relaxation", relaxation, "in (0, 1]");
+  requireOption(stall_window >= 2, "cadoux.stall_window", stall_window, ">= 2");
+}
+
+CadouxFixedPoint::CadouxFixedPoint(const CadouxOptions& options, std::unique_ptr<ConvexSolver> inner)
+  : Solver("cadoux_fixed_point")
+  , options_(options)
+  , map_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+{
+  options_.validate();
+}
+
+void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  map_.setProblem(problem, stepLengths());
+  map_.setGuess(result.solution.r);
+  s_ = map_.value();
+  if (options_.initial_slip == InitialSlip::ZERO)
+    s_.setZero();
+  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  const double first_residual = residual(problem, map_.u(), map_.r());
+  if (loop.record(first_residual, map_.r()))
+    return;
+  ConvexBudget budget;
+  budget.interrupted = [this] { return timeIsUp(); };
+  int raises = 0;
+  while (result.iterations < stopping().max_iterations)
+  {
+    // Without friction there is one convex problem: solve it to the end.
+    const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
+    budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
+    const ConvexResult inner = map_.evaluate(s_, budget);
+    ++result.iterations;
+    if (inner.status != ConvexStatus::CONVERGED &&
+        isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
+    {
+      if (map_.size() == 0 || ++raises > MAX_RAISES)
+      {
+        loop.stop(SolverStatus::STAGNATED, "the convex problem at s is unqualified: no impulse belongs to it");
+        return;
+      }
+      s_.array() += problem.q.lpNorm<Eigen::Infinity>();
+      map_.setGuess(Eigen::VectorXd::Zero(problem.W.rows()));
+      continue;
+    }
+    if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+      return;
+    if (timeIsUp())
+    {
+      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+      return;
+    }
+    s_ += options_.relaxation * (map_.value() - s_);
+  }
+  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,39 @@
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+
+#include <algorithm>
+
+namespace frictional_contact_sim
+{
+bool OuterLoop::stop(SolverStatus status, const char* message)
+{
+  result_.status = status;
+  result_.message = message;
+  return true;
+}
+
+bool OuterLoop::record(double residual, const Eigen::VectorXd& r)
+{
+  last_ = residual;
+  if (residual < best_)
+  {
+    best_ = residual;
+    result_.solution.r = r;
+  }
+  if (best_ <= tolerance_)
+    return stop(SolverStatus::CONVERGED, "");
+  if (best_ < 0.9 * window_best_)
+  {
+    window_best_ = best_;
+    since_ = 0;
+  }
+  else if (++since_ >= window_)
+    return stop(SolverStatus::STAGNATED, "the outer iteration no longer reduces the residual");
+  return false;
+}
+
+double OuterLoop::innerTolerance(double accuracy) const
+{
+  return std::clamp(accuracy * last_, 0.1 * tolerance_, accuracy);
+}
+
+}  // namespace frictional_contact_sim

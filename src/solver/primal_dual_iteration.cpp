@@ -1,0 +1,257 @@
+#include "frictional_contact_sim/solver/convex/primal_dual_iteration.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Shift of rows held at zero, relative to the largest 1/rho: their step is round-off.
+constexpr double INFINITE_SHIFT = 1e20;
+/// The regularisation grows by 100 when the factorization breaks down, at most this often.
+constexpr int FACTOR_ATTEMPTS = 5;
+}  // namespace
+
+void PrimalDualOptions::validate() const
+{
+  requireOption(step_fraction > 0.0 && step_fraction < 1.0, "interior_point.step_fraction", step_fraction, "in (0, 1)");
+  requireOption(regularisation >= 0.0, "interior_point.regularisation", regularisation, ">= 0");
+}
+
+PrimalDualIteration::PrimalDualIteration(const PrimalDualOptions& options) : options_(options)
+{
+  options_.validate();
+}
+
+void PrimalDualIteration::addCone(int block, int head, int tail, int dimension, double scale, double constant)
+{
+  Cone cone;
+  cone.block = block;
+  cone.head = head;
+  cone.tail = tail;
+  cone.dimension = dimension;
+  cone.scale = scale;
+  cone.constant = constant;
+  cones_.push_back(cone);
+}
+
+void PrimalDualIteration::makeCones(const ConvexProblem& problem)
+{
+  cones_.clear();
+  fixed_.clear();
+  for (int i = 0; i < problem.W->blocks(); ++i)
+  {
+    const SimpleSet& set = problem.sets[static_cast<std::size_t>(i)];
+    const int first = problem.W->offset(i);
+    const bool contact = set.type == SetType::CONE || set.type == SetType::CYLINDER;
+    const bool point = !(set.parameter > 0.0);
+    if (set.type == SetType::CONE && !point)
+      addCone(i, first, first + 1, set.dimension, set.parameter, 0.0);
+    else if (contact || set.type == SetType::HALF_LINE)
+      addCone(i, first, first + 1, 1, 1.0, 0.0);
+    if (set.type == SetType::CYLINDER && !point)
+      addCone(i, -1, first + 1, set.dimension, 1.0, set.parameter);
+    if (set.type == SetType::INTERVAL && !point)
+      addCone(i, -1, first, 2, 1.0, set.parameter);
+    if (contact && point)
+      for (int row = first + 1; row < first + set.dimension; ++row)
+        fixed_.push_back({i, row});
+    if (set.type == SetType::INTERVAL && point)
+      fixed_.push_back({i, first});
+  }
+}
+
+Vector<3> PrimalDualIteration::toCone(const Cone& cone, const Eigen::VectorXd& rows) const
+{
+  Vector<3> x = Vector<3>::Zero();
+  if (cone.head >= 0)
+    x[0] = cone.scale * rows[cone.head];
+  for (int k = 1; k < cone.dimension; ++k)
+    x[k] = rows[cone.tail + k - 1];
+  return x;
+}
+
+void PrimalDualIteration::fromCone(const Cone& cone, const Vector<3>& z, Eigen::VectorXd& rows) const
+{
+  if (cone.head >= 0)
+    rows[cone.head] += cone.scale * z[0];
+  for (int k = 1; k < cone.dimension; ++k)
+    rows[cone.tail + k - 1] += z[k];
+}
+
+void PrimalDualIteration::startCone(const ConvexProblem& problem, Cone& cone, const Eigen::VectorXd& guess_u,
+                                    double shift, double speed)
+{
+  const double rho = problem.step_lengths[cone.block];
+  const bool cold = !(shift < speed);
+  Vector<3> x = toCone(cone, r_);
+  Vector<3> z = Vector<3>::Zero();
+  if (cold)
+  {
+    // The same product x.z everywhere: the start is centred whatever the mass ratios.
+    const double product = mean_step_length_ * speed * speed;
+    x.setZero();
+    x[0] = cone.head >= 0 ? cone.scale * std::sqrt(rho * mean_step_length_) * speed : cone.constant;
+    z[0] = product / x[0];
+  }
+  else
+  {
+    z[0] = cone.head >= 0 ? guess_u[cone.head] / cone.scale : 0.0;
+    for (int k = 1; k < cone.dimension; ++k)
+      z[k] = guess_u[cone.tail + k - 1];
+    if (cone.head >= 0)
+      x[0] = std::max(x[0], x.tail<2>().norm()) + cone.scale * rho * shift;
+    else
+    {
+      x[0] = cone.constant;
+      const double limit = cone.constant / (1.0 + std::min(1.0, rho * shift / cone.constant));
+      if (x.tail<2>().norm() > limit)
+        x.tail<2>() *= limit / x.tail<2>().norm();
+    }
+    z[0] = std::max(z[0], z.tail<2>().norm()) + shift / cone.scale;
+  }
+  if (cone.head >= 0)
+    r_[cone.head] = x[0] / cone.scale;
+  for (int k = 1; k < cone.dimension; ++k)
+    r_[cone.tail + k - 1] = x[k];
+  scalePair(x, z, cone.dimension, cone.scaling);
+}
+
+void PrimalDualIteration::start(const ConvexProblem& problem, const Eigen::VectorXd& r, const Eigen::VectorXd& u,
+                                double shift)
+{
+  factor_.setOperator(*problem.W);
+  makeCones(problem);
+  mean_step_length_ = std::exp(problem.step_lengths.array().log().mean());
+  const double speed = std::max(problem.c.lpNorm<Eigen::Infinity>(), 1e-12);
+  r_ = r;
+  for (const FixedRow& fixed : fixed_)
+    r_[fixed.row] = 0.0;
+  for (Cone& cone : cones_)
+    startCone(problem, cone, u, shift, speed);
+  problem.W->apply(r_, u_);
+  u_ += problem.c;
+  updateDual();
+}
+
+void PrimalDualIteration::updateDual()
+{
+  dual_.setZero(r_.size());
+  for (const Cone& cone : cones_)
+    fromCone(cone, cone.scaling.z(), dual_);
+}
+
+double PrimalDualIteration::complementarity() const
+{
+  double sum = 0.0;
+  for (const Cone& cone : cones_)
+    sum += cone.scaling.lambda.squaredNorm();
+  return cones_.empty() ? 0.0 : sum / static_cast<double>(cones_.size());
+}
+
+bool PrimalDualIteration::factor(const ConvexProblem& problem)
+{
+  const double largest = problem.step_lengths.cwiseInverse().maxCoeff();
+  double regularisation = options_.regularisation;
+  for (int attempt = 0; attempt < FACTOR_ATTEMPTS; ++attempt)
+  {
+    blocks_.assign(static_cast<std::size_t>(problem.W->blocks()) * ShiftedFactor::BLOCK_STRIDE, 0.0);
+    const auto entry = [&](int block, int a, int b) -> double&
+    {
+      const int d = problem.W->dimension(block);
+      return blocks_[static_cast<std::size_t>(block * ShiftedFactor::BLOCK_STRIDE + a * d + b)];
+    };
+    for (int i = 0; i < problem.W->blocks(); ++i)
+      for (int a = 0; a < problem.W->dimension(i); ++a)
+        entry(i, a, a) += regularisation / problem.step_lengths[i];
+    for (const Cone& cone : cones_)
+    {
+      const SquareMatrix<3> metric = cone.scaling.inverse.transpose() * cone.scaling.inverse;
+      const int first = problem.W->offset(cone.block);
+      for (int a = cone.head >= 0 ? 0 : 1; a < cone.dimension; ++a)
+        for (int b = cone.head >= 0 ? 0 : 1; b < cone.dimension; ++b)
+        {
+          const int row = a == 0 ? cone.head - first : cone.tail + a - 1 - first;
+          const int column = b == 0 ? cone.head - first : cone.tail + b - 1 - first;
+          entry(cone.block, row, column) += (a == 0 ? cone.scale : 1.0) * (b == 0 ? cone.scale : 1.0) * metric(a, b);
+        }
+    }
+    for (const FixedRow& fixed : fixed_)
+    {
+      const int local = fixed.row - problem.W->offset(fixed.block);
+      entry(fixed.block, local, local) += INFINITE_SHIFT * largest;
+    }
+    if (factor_.factor(blocks_))
+      return true;
+    regularisation = std::max(100.0 * regularisation, 1e-14);
+  }
+  return false;
+}
+
+void PrimalDualIteration::direction()
+{
+  // rhs = -(W r + c - A^T z) + A^T N^-T target, with target = lambda \ d.
+  rhs_ = dual_ - u_;
+  for (const Cone& cone : cones_)
+    fromCone(cone, cone.scaling.inverse.transpose() * cone.target, rhs_);
+  for (const FixedRow& fixed : fixed_)
+    rhs_[fixed.row] = 0.0;
+  factor_.solve(rhs_, dr_);
+  for (const FixedRow& fixed : fixed_)
+    dr_[fixed.row] = 0.0;
+  for (Cone& cone : cones_)
+  {
+    cone.affine_x = cone.scaling.inverse * toCone(cone, dr_);
+    cone.affine_z = cone.target - cone.affine_x;
+  }
+}
+
+double PrimalDualIteration::longestStep() const
+{
+  double step = std::numeric_limits<double>::infinity();
+  for (const Cone& cone : cones_)
+    step = std::min(
+        {step, lorentzStep(cone.scaling.lambda, cone.affine_x), lorentzStep(cone.scaling.lambda, cone.affine_z)});
+  return step;
+}
+
+double PrimalDualIteration::step(const ConvexProblem& problem)
+{
+  problem.W->apply(r_, u_);
+  u_ += problem.c;
+  if (!factor(problem))
+    return 0.0;
+  for (Cone& cone : cones_)
+    cone.target = -cone.scaling.lambda;
+  direction();
+  const double affine = std::min(1.0, longestStep());
+  const double centring = std::pow(1.0 - affine, 3) * complementarity();
+  for (Cone& cone : cones_)
+  {
+    Vector<3> right = -jordanProduct(cone.scaling.lambda, cone.scaling.lambda);
+    right -= jordanProduct(cone.affine_x, cone.affine_z);
+    right[0] += centring;
+    cone.target = jordanDivide(cone.scaling.lambda, right);
+  }
+  direction();
+  const double length = std::min(1.0, options_.step_fraction * longestStep());
+  if (!std::isfinite(length) || !dr_.allFinite())
+    return 0.0;
+  for (Cone& cone : cones_)
+  {
+    const Vector<3> x = cone.scaling.lambda + length * cone.affine_x;
+    const Vector<3> z = cone.scaling.lambda + length * cone.affine_z;
+    if (!advance(cone.scaling, x, z, cone.dimension))
+      return 0.0;
+  }
+  r_ += length * dr_;
+  problem.W->apply(r_, u_);
+  u_ += problem.c;
+  updateDual();
+  return length;
+}
+
+}  // namespace frictional_contact_sim
