@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/law_functions.h"
@@ -48,7 +49,7 @@ void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_le
 }
 
 double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors)
+                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off)
 {
   if (errors != nullptr)
     errors->resize(static_cast<Eigen::Index>(laws.size()));
@@ -59,7 +60,8 @@ double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_len
   {
     const auto index = static_cast<Eigen::Index>(i);
     const int dimension = laws[i].dimension();
-    const double error = naturalMapError(laws[i], u.data() + row, r.data() + row, step_lengths[index]);
+    const double found = naturalMapError(laws[i], u.data() + row, r.data() + row, step_lengths[index]);
+    const double error = found <= round_off ? 0.0 : found;
     if (errors != nullptr)
       (*errors)[index] = error;
     // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
@@ -94,7 +96,9 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
   solution.u.resize(problem.rows());
   solution.u.noalias() = problem.H * solution.v;
   solution.u += problem.w;
-  residual.law = lawResidual(problem.laws, data.step_lengths, data.free_velocity, solution.u, solution.r);
+  const double round_off = 8.0 * std::numeric_limits<double>::epsilon() * maxAbs(solution.v);
+  residual.law =
+      lawResidual(problem.laws, data.step_lengths, data.free_velocity, solution.u, solution.r, nullptr, round_off);
 
   data.momentum.resize(problem.velocities());
   data.term.resize(problem.velocities());

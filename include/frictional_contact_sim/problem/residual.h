@@ -32,10 +32,12 @@ void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_le
 /**
  * @brief The local part of E for given u and r, nothing recomputed; no allocation.
  * @param free_velocity |q|_inf
+ * @param round_off errors up to this count as zero [m/s]
  * @param errors when not nullptr, |e_i| of each law [m/s] (resized)
  */
 double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors = nullptr);
+                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors = nullptr,
+                   double round_off = 0.0);
 
 /** @brief E of a local problem; u is overwritten by W r + q. */
 double localResidual(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,
