@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "frictional_contact_sim/problem/fclib.h"
+#include "frictional_contact_sim/problem/law_functions.h"
 #include "frictional_contact_sim/simulation/energy.h"
 #include "simulator_impl.h"
 
@@ -60,6 +61,9 @@ void Simulator::Impl::storeContacts(const std::vector<ContactPoint>& points)
     state.impulse = r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2;
     state.velocity = u[0] * point.normal + u[1] * row.tangent_1 + u[2] * row.tangent_2;
     state.cone_margin = row.friction * r[0] - r.tail<2>().norm();
+    const auto law = static_cast<Eigen::Index>(contacts.size());  // contacts are the first laws, in this order
+    state.residual = naturalMapError(assembly.problem().laws[law], result.solution.u.data() + row.row,
+                                     result.solution.r.data() + row.row, solver->stepLengths()[law]);
     state.mode = modeOf(row, r, u, scenario.stopping.tolerance);
     contact_index.emplace_back(state.id, static_cast<int>(contacts.size()));
     contacts.push_back(state);

@@ -76,6 +76,8 @@ public:
   SolverResult solve(const DelassusProblem& problem, const Solution* guess = nullptr);
   SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
 
+  /** @brief rho_i of the laws of the last global problem solved, for the natural map of single contacts. */
+  const Eigen::VectorXd& stepLengths() const { return global_.step_lengths; }
   const std::string& name() const { return name_; }
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
