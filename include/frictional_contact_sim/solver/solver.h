@@ -76,12 +76,12 @@ public:
   SolverResult solve(const DelassusProblem& problem, const Solution* guess = nullptr);
   SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
 
-  /** @brief rho_i of the laws of the last global problem solved, for the natural map of single contacts. */
-  const Eigen::VectorXd& stepLengths() const { return global_.step_lengths; }
   const std::string& name() const { return name_; }
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
   const StoppingOptions& stopping() const { return stopping_; }
+  /** @brief rho_i = 1/lambda_max(W_ii) of the laws of the last local problem, in their order [kg]. */
+  const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
 
 protected:
   /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
@@ -93,8 +93,6 @@ protected:
    */
   void delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
                 SolverResult& result) const;
-  /** @brief rho_i = 1/lambda_max(W_ii) of the problem being solved [kg]. */
-  const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
   /** @brief E of the problem being solved at (u, r), u = W r + q given; costs no product with W. */
   double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
 
