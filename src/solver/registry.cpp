@@ -3,6 +3,9 @@
 #include <stdexcept>
 
 #include "frictional_contact_sim/solver/ac_newton.h"
+#include "frictional_contact_sim/solver/cadoux_fixed_point.h"
+#include "frictional_contact_sim/solver/ds_newton.h"
+#include "frictional_contact_sim/solver/fb_newton.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/portfolio.h"
 
@@ -25,8 +28,14 @@ const std::vector<SolverEntry>& solverRegistry()
 
       {"ac_newton", &create<AcNewton>, "proximal semismooth Newton on the Alart-Curnier function",
        "Alart, Curnier (1991); Cadoux (2009), (4.6), appendix D"},
+      {"ds_newton", &create<DsNewton>, "proximal semismooth Newton on De Saxce's projection function",
+       "De Saxce, Feng (1998); Cadoux (2009), (4.8), appendices D.2, E"},
+      {"fb_newton", &create<FbNewton>, "proximal semismooth Newton on the Fischer-Burmeister function of the cone",
+       "Fukushima, Luo, Tseng (2002); Cadoux (2009), (4.11)"},
       {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
        "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
+      {"cadoux_fixed_point", &create<CadouxFixedPoint>, "fixed point on the slip speeds, convex problem over the cones",
+       "Cadoux (2009), 4.7, (3.13), (3.24)"},
   };
   return registry;
 }
