@@ -15,7 +15,7 @@ constexpr int FREE_RUN_WINDOW = 32;  // steps between two looks at the subscribe
 constexpr int PACED_WINDOW = 1000;  // at a given pace queues stay short by themselves
 constexpr double IDLE_PERIOD = 0.02;  // [s]
 constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
-constexpr double SETTLING_TIME = 0.3;  // between a recorder's subscription and its readiness [s]
+constexpr double SETTLING_TIME = 0.5;  // between a recorder's subscription and its readiness [s]
 constexpr double COMPLAINT_DELAY = 5.0;  // [s]
 
 double wallSeconds()
@@ -276,7 +276,7 @@ bool SimulatorNode::subscribersStand()
   return std::all_of(awaited_topics_.begin(), awaited_topics_.end(), stands);
 }
 
-/** @brief Nothing to step: serve callbacks, and give the time to those who come now. */
+/** @brief Nothing to step: serve callbacks, and give the time to those who come now (a recorder waits for a clock). */
 void SimulatorNode::idle()
 {
   const double due = wallSeconds() + CLOCK_PERIOD;
@@ -285,10 +285,11 @@ void SimulatorNode::idle()
   while (ros::ok() && (paused_ || waiting_) && outcome_ == Outcome::GO_ON && wallSeconds() < due)
   {
     serveCallbacks(IDLE_PERIOD);
-    if (waiting_ && subscribersStand())
+    if (waiting_)
     {
-      ros::WallDuration(SETTLING_TIME).sleep();
-      waiting_ = false;
+      const double now = wallSeconds();
+      standing_since_ = subscribersStand() ? std::min(standing_since_, now) : now;
+      waiting_ = now - standing_since_ < SETTLING_TIME;
     }
   }
   pacer_.restart(simulator_.time(), wallSeconds());

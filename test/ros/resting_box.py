@@ -31,8 +31,7 @@ class RestingBoxTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "box.bag")
             topics = ["/joint_states"] + [node_runner.NAME + "/" + name for name in ("contacts", "step_report")]
-            recorder = subprocess.Popen(["rosrun", "rosbag", "record", "--quiet", "--buffsize=0", "--tcpnodelay",
-                                         "--output-name=" + bag] + topics)
+            recorder = subprocess.Popen(["rosrun", "frictional_contact_sim", "record_bag", bag] + topics)
             # Contacts twice: this test and the recorder. As fast as possible: nothing may be lost there either.
             node = node_runner.Node({"tolerance": 1e-11, "num_steps": STEPS, "real_time_factor": 0.0, "bag": bag,
                                      "wait_for_subscribers": ["~contacts", "~contacts", "joint_states", "~step_report"]},

@@ -11,6 +11,7 @@
 #include <std_srvs/SetBool.h>
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,7 @@ private:
   std::vector<ros::Subscriber> subscribers_;
   bool paused_ = false;
   bool waiting_ = false;
+  double standing_since_ = std::numeric_limits<double>::infinity();  // wall clock: all awaited subscribers are there
   std::int64_t steps_done_ = 0;
   Outcome outcome_ = Outcome::GO_ON;
 };
