@@ -48,7 +48,10 @@ void setSides(const CoreView& view, const Polyhedron::Face& face, const Eigen::V
 bool isInsideSides(const Eigen::Vector3d& point, double tolerance, const Manifold& work);
 constexpr double SIDE_TOLERANCE = 1e-8;  ///< times the size: points this near a side are on it
 
-/** @brief Drops the points from `found` on that are within 1e-2 of the size of a point from `first` to `found`. */
+/**
+ * @brief Of the look-ahead points from `found` on, drops those that are not behind the points from `first` to `found`:
+ * same features, within 1e-2 of the size, or a smaller gap (in an overlap, along a direction that is not the best).
+ */
 void dropDuplicates(const CorePair& pair, int first, int found);
 /** @brief reduceManifold with tangents across the first normal, fixed in b. */
 void reduceAcross(const CorePair& pair);

@@ -6,6 +6,22 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+// A face carries the contact unless another direction separates better by this fraction of the size. Sharp cores: at
+// contact the gap is the same, and the face brings all its points. Rounded cores touch at a distance r: the face must
+// be the closest feature to second order of r.
+constexpr double FACE_PREFERENCE = 1e-6;
+constexpr double FACE_PREFERENCE_ROUND = 1e-13;
+// The deepest point must be over the face, else the closest feature is beside it.
+constexpr double OVER_FACE = 1e-9;
+constexpr double OVER_FACE_ROUND = 1e-13;
+constexpr double PARALLEL_EDGES = 1e-3;  // sine below which the face normals stand for the product of two edges
+// Resting on an edge but nearly along a face: the points over the face are look-ahead contacts up to this tilt.
+constexpr double LOOK_AHEAD_ANGLE = 0.1;
+
+}  // namespace
+
 int alignedFace(const CoreView& view, const Eigen::Vector3d& direction)
 {
   const Eigen::Vector3d local = view.rotation.transpose() * direction;
@@ -49,18 +65,6 @@ double angleBetween(const Eigen::Vector3d& n, const Eigen::Vector3d& other)
 
 namespace
 {
-// A face carries the contact unless another direction separates better by this fraction of the size. Sharp cores: at
-// contact the gap is the same, and the face brings all its points. Rounded cores touch at a distance r: the face must
-// be the closest feature to second order of r.
-constexpr double FACE_PREFERENCE = 1e-6;
-constexpr double FACE_PREFERENCE_ROUND = 1e-13;
-// The deepest point must be over the face, else the closest feature is beside it.
-constexpr double OVER_FACE = 1e-9;
-constexpr double OVER_FACE_ROUND = 1e-13;
-constexpr double PARALLEL_EDGES = 1e-3;  // sine below which the face normals stand for the product of two edges
-// Resting on an edge but nearly along a face: the points over the face are look-ahead contacts up to this tilt.
-constexpr double LOOK_AHEAD_ANGLE = 0.1;
-
 /// Of two axes that separate equally well the larger face (it holds the other's corners), else that of b.
 FaceAxis chooseFace(const CorePair& pair, const FaceAxis& on_a, const FaceAxis& on_b)
 {
@@ -313,6 +317,12 @@ void dropDuplicates(const CorePair& pair, int first, int found)
 {
   std::vector<PairContact>& points = pair.manifold.points;
   int count = found;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = first; k < found; ++k)
+  {
+    least = std::min(least, points[k].gap);
+  }
+  least -= OVER_FACE * pair.size;
   for (int k = found; k < pair.manifold.count; ++k)
   {
     const bool is_new =
@@ -322,7 +332,7 @@ void dropDuplicates(const CorePair& pair, int first, int found)
                        return (other.feature_a == points[k].feature_a && other.feature_b == points[k].feature_b) ||
                               (other.position - points[k].position).norm() < 1e-2 * pair.size;
                      });
-    if (is_new)
+    if (is_new && points[k].gap >= least)
     {
       points[count++] = points[k];
     }

@@ -207,5 +207,111 @@ TEST(CapsuleOnBoxTest, LyingOnTheFaceItTouchesAtBothEnds)
   }
 }
 
+TEST(CylinderPairTest, LogsSideBySideTouchAtBothEndsOfTheirLine)
+{
+  const ConvexShape log = makeShape(Cylinder{0.1, 0.5});
+  for (double roll : {0.0, 0.3, 1.0})
+  {
+    for (double tilt : {0.0, 1e-16, 1e-12})
+    {
+      const Eigen::Matrix3d turn = about({0, 1, 0}, tilt) * about({0, 0, 1}, roll);
+      const auto points = contactsOf(log, log, pose(turn, {0.12, 0.16, 0.0}), 1e-3);
+      ASSERT_EQ(points.size(), 2u) << roll << " " << tilt;
+      for (const PairContact& point : points)
+      {
+        EXPECT_NEAR(point.gap, 0.0, tilt + 1e-15);
+        EXPECT_NEAR((point.normal - Eigen::Vector3d(0.6, 0.8, 0.0)).norm(), 0.0, 10 * tilt + 1e-14);
+        EXPECT_NEAR((point.position.head<2>() - Eigen::Vector2d(0.06, 0.08)).norm(), 0.0, 1e-11);
+        EXPECT_NEAR(std::abs(point.position.z()), 0.5, tilt + ROUND_OFF);
+      }
+    }
+  }
+}
+
+TEST(CylinderPairTest, ShiftedLogsTouchAlongTheirOverlap)
+{
+  const ConvexShape log = makeShape(Cylinder{0.1, 0.5});
+  const auto points = contactsOf(log, log, at(0.0, 0.2, 0.3), 1e-3);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(std::min(points[0].position.z(), points[1].position.z()), -0.2, ROUND_OFF);
+  EXPECT_NEAR(std::max(points[0].position.z(), points[1].position.z()), 0.5, ROUND_OFF);
+}
+
+TEST(CylinderPairTest, CrossedLogsTouchAtOnePoint)
+{
+  const ConvexShape log = makeShape(Cylinder{0.1, 0.5});
+  const auto points = contactsOf(log, log, pose(about({1, 0, 0}, 1.0), {0.2 + 1e-4, 0.05, 0.1}), 1e-3);
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_NEAR(points[0].gap, 1e-4, ROUND_OFF);
+  EXPECT_NEAR((points[0].normal - Eigen::Vector3d::UnitX()).norm(), 0.0, ROUND_OFF);
+}
+
+TEST(CylinderPairTest, StackedCylindersShareTheRimOfTheSmaller)
+{
+  const ConvexShape wide = makeShape(Cylinder{0.2, 0.1});
+  const ConvexShape narrow = makeShape(Cylinder{0.1, 0.1});
+  const auto points = contactsOf(narrow, wide, pose(about({0, 0, 1}, 0.3), {0.05, 0, 0.2}), 1e-3);
+  ASSERT_EQ(points.size(), 8u);
+  for (const PairContact& point : points)
+  {
+    EXPECT_NEAR(point.gap, 0.0, 1e-15);
+    EXPECT_NEAR((point.position.head<2>() - Eigen::Vector2d(0.05, 0)).norm(), 0.1, ROUND_OFF);
+  }
+}
+
+TEST(CylinderOnBoxTest, StandsOnTheRimAndIsCutByTheBorder)
+{
+  const ConvexShape cylinder = makeShape(Cylinder{0.1, 0.2});
+  const ConvexShape box = makeShape(Box{{0.5, 0.5, 0.1}});
+  const auto inside = contactsOf(cylinder, box, at(0.1, 0.2, 0.3), 1e-3);
+  ASSERT_EQ(inside.size(), 8u);
+  // centre 0.05 inside the border: nothing beyond it, and the cuts of the rim at y = +- sqrt(R^2 - 0.05^2)
+  const auto cut = contactsOf(cylinder, box, at(0.45, 0.2, 0.3), 1e-3);
+  ASSERT_GE(cut.size(), 4u);
+  int cuts = 0;
+  for (const PairContact& point : cut)
+  {
+    EXPECT_NEAR(point.gap, 0.0, 1e-15);
+    EXPECT_LE(point.position.x(), 0.5 + ROUND_OFF);
+    cuts += std::abs(std::abs(point.position.y() - 0.2) - std::sqrt(0.0075)) < 1e-13 ? 1 : 0;
+  }
+  EXPECT_EQ(cuts, 2);
+}
+
+TEST(CylinderOnBoxTest, LyingItTouchesAtTheEndsOfTheGenerator)
+{
+  const ConvexShape cylinder = makeShape(Cylinder{0.1, 0.2});
+  const ConvexShape box = makeShape(Box{{0.5, 0.5, 0.1}});
+  for (double tilt : {0.0, 1e-15, 1e-9, 1e-4})
+  {
+    const Eigen::Matrix3d turn = about({0, 1, 0}, M_PI / 2 + tilt);
+    const auto points = contactsOf(cylinder, box, pose(turn, {0.1, 0.1, 0.2}), 1e-3);
+    ASSERT_EQ(points.size(), 2u) << tilt;
+    const double lowest = 0.1 - 0.2 * std::sin(tilt) - 0.1 * std::cos(tilt);
+    EXPECT_NEAR(smallestGap(points), lowest, 1e-15);
+  }
+}
+
+TEST(HullOnHullTest, CubesAsHullsHaveTheManifoldOfBoxes)
+{
+  const std::vector<Eigen::Vector3d> corners = boxPolyhedron({0.1, 0.1, 0.05}).vertices;
+  ConvexShape hull = makeShape(Box{{0.1, 0.1, 0.05}});
+  hull.kind = ShapeKind::HULL;
+  hull.core = convexHull(corners);
+  ASSERT_EQ(hull.core.faces.size(), 6u);
+  std::mt19937 random(7);
+  for (int k = 0; k < 50; ++k)
+  {
+    const Eigen::Vector3d jitter = 1e-15 * randomVector(random);
+    const auto points =
+        contactsOf(hull, hull, pose(about(randomVector(random), 1e-15), Eigen::Vector3d(0, 0, 0.1) + jitter), 1e-3);
+    ASSERT_EQ(points.size(), 4u);
+    for (const PairContact& point : points)
+    {
+      EXPECT_NEAR(point.gap, 0.0, 5e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim
