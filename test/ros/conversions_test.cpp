@@ -1,0 +1,212 @@
+#include "frictional_contact_sim/ros/conversions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "frictional_contact_sim/ros/command.h"
+#include "frictional_contact_sim/ros/markers.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+BodySpec makeBody(const std::string& name, const std::string& urdf, double x)
+{
+  BodySpec body;
+  body.name = name;
+  body.urdf_path = std::string(PROJECT_DIR) + urdf;
+  body.pose = Eigen::Isometry3d(Eigen::Translation3d(x, 0.0, 0.1));
+  return body;
+}
+
+/** @brief The 10 kg box of the rostests, resting on the ground after 100 steps. */
+Scenario boxScenario()
+{
+  Scenario scenario;
+  scenario.solver = "gauss_seidel";
+  scenario.stopping.tolerance = 1e-11;
+  scenario.ground = GroundSpec();
+  scenario.bodies = {makeBody("box", "/test/ros/box_10kg.urdf", 0.0)};
+  return scenario;
+}
+
+/** @brief Two double pendulums on fixed bases: every name occurs twice. */
+Scenario twinScenario()
+{
+  Scenario scenario;
+  scenario.solver = "gauss_seidel";
+  scenario.bodies = {makeBody("left", "/urdf/double_pendulum.urdf", -1.0),
+                     makeBody("right", "/urdf/double_pendulum.urdf", 1.0)};
+  for (BodySpec& body : scenario.bodies)
+  {
+    body.base = BaseType::FIXED;
+  }
+  return scenario;
+}
+
+TEST(StampTest, IsRoundedToNanoseconds)
+{
+  EXPECT_EQ(toStamp(0.001), ros::Time(0, 1000000));
+  EXPECT_EQ(toStamp(0.001 * 999), ros::Time(0, 999000000));
+  EXPECT_EQ(toStamp(12345.6789), ros::Time(12345, 678900000));
+}
+
+TEST(ConversionsTest, ContactForcesOfARestingBoxAreItsWeight)
+{
+  Simulator simulator(boxScenario());
+  for (int k = 0; k < 100; ++k)
+  {
+    simulator.step();
+  }
+  const NameTable names = makeNameTable(simulator);
+  ContactArray message;
+  fillContacts(simulator, names, toStamp(simulator.time()), message);
+  ASSERT_EQ(message.contacts.size(), 4u);
+  EXPECT_EQ(message.header.stamp, ros::Time(0, 100000000));
+  EXPECT_EQ(message.header.frame_id, "world");
+  double force = 0.0;
+  for (const Contact& contact : message.contacts)
+  {
+    const bool on_box = contact.body_a == "box";
+    EXPECT_TRUE(on_box != (contact.body_b == "box"));
+    EXPECT_EQ(on_box ? contact.link_b : contact.link_a, "ground");
+    force += on_box ? contact.force.z : -contact.force.z;
+    EXPECT_EQ(contact.mode, Contact::STICKING);
+    // force = impulse / dt to round-off of one division
+    EXPECT_NEAR(contact.force.z, contact.impulse.z / 0.001, 1e-12 * std::abs(contact.force.z));
+    EXPECT_GE(contact.cone_margin, 0.0);
+  }
+  EXPECT_NEAR(force, 98.1, 1e-6);  // solver tolerance 1e-11 relative, far below
+}
+
+TEST(ConversionsTest, StepReportCopiesTheSummary)
+{
+  Simulator simulator(boxScenario());
+  const StepSummary& summary = simulator.step();
+  StepReport message;
+  fillStepReport(summary, 0.5, ros::Time(1, 2), message);
+  EXPECT_EQ(message.step, 1u);
+  EXPECT_EQ(message.dt, 0.001);
+  EXPECT_EQ(message.real_time_factor, 0.5);
+  EXPECT_EQ(message.velocities, 6u);
+  EXPECT_EQ(message.status, StepReport::CONVERGED);
+  EXPECT_EQ(message.existence, StepReport::NOT_CHECKED);
+  EXPECT_TRUE(std::isnan(message.existence_margin));
+  EXPECT_EQ(message.kinetic, summary.energy.kinetic);
+  EXPECT_EQ(message.potential, summary.energy.potential);
+}
+
+TEST(ConversionsTest, OdometryTwistIsInTheChildFrame)
+{
+  Scenario scenario = boxScenario();
+  scenario.ground.reset();
+  scenario.gravity.setZero();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  scenario.bodies[0].pose = pose;
+  scenario.bodies[0].linear_velocity = Eigen::Vector3d(1.0, 0.0, 0.0);
+  Simulator simulator(scenario);
+  simulator.step();
+  const NameTable names = makeNameTable(simulator);
+  nav_msgs::Odometry message;
+  fillOdometry(simulator, names, 0, ros::Time(1, 0), message);
+  EXPECT_EQ(message.child_frame_id, "box");
+  // Free flight along world x, which is -y of a box turned by +90 degrees; round-off only.
+  EXPECT_NEAR(message.pose.pose.position.x, 0.001, 1e-15);
+  EXPECT_NEAR(message.twist.twist.linear.x, 0.0, 1e-15);
+  EXPECT_NEAR(message.twist.twist.linear.y, -1.0, 1e-15);
+  EXPECT_NEAR(message.pose.pose.orientation.z, std::sqrt(0.5), 1e-15);
+}
+
+TEST(NamesTest, NamesThatOccurTwiceGetTheirRobot)
+{
+  const Simulator simulator(twinScenario());
+  const NameTable names = makeNameTable(simulator);
+  ASSERT_EQ(names.joints.size(), 4u);
+  const std::string plain = simulator.model(0).joints.at(1).name;
+  EXPECT_EQ(names.joints[0].name, "left/" + plain);
+  EXPECT_EQ(names.joints[2].name, "right/" + plain);
+  EXPECT_EQ(findJoint(names, "right/" + plain), 2);
+  EXPECT_EQ(findJoint(names, plain), -1);
+  EXPECT_EQ(names.actuated.size(), 4u);
+  EXPECT_NE(names.roots[0], names.roots[1]);
+}
+
+TEST(NamesTest, AnUnambiguousJointIsAlsoUnderstoodWithItsRobot)
+{
+  Scenario scenario = twinScenario();
+  scenario.bodies.pop_back();
+  const Simulator simulator(scenario);
+  const NameTable names = makeNameTable(simulator);
+  EXPECT_EQ(findJoint(names, names.joints[1].name), 1);
+  EXPECT_EQ(findJoint(names, "left/" + names.joints[1].name), 1);
+  EXPECT_EQ(findJoint(names, "right/" + names.joints[1].name), -1);
+}
+
+TEST(JointStateTest, HasEveryJointInStableOrder)
+{
+  Scenario scenario = twinScenario();
+  Simulator simulator(scenario);
+  const NameTable names = makeNameTable(simulator);
+  JointCommand command;
+  command.target = 0.25;
+  simulator.setCommand(1, names.joints[3].joint, command);
+  simulator.step();
+  sensor_msgs::JointState message;
+  fillJointState(simulator, names, ros::Time(0, 1), message);
+  ASSERT_EQ(message.name.size(), 4u);
+  EXPECT_EQ(message.position[3], simulator.position(1)[1]);
+  EXPECT_EQ(message.velocity[2], simulator.velocity(1)[0]);
+  EXPECT_EQ(message.effort[3], 0.25);
+  EXPECT_EQ(message.effort[2], 0.0);
+}
+
+TEST(CommandTest, IsTakenAsAWholeOrNotAtAll)
+{
+  const Simulator simulator(twinScenario());
+  const NameTable names = makeNameTable(simulator);
+  const std::string first = names.joints[0].name;
+  const std::string second = names.joints[1].name;
+  EXPECT_EQ(namedTargets(names, {second, first}, {1.0, 2.0}, "effort"), (JointTargets{{1, 1.0}, {0, 2.0}}));
+  EXPECT_THROW(namedTargets(names, {first, "nobody"}, {1.0, 2.0}, "effort"), CommandError);
+  EXPECT_THROW(namedTargets(names, {first, first}, {1.0, 2.0}, "effort"), CommandError);
+  EXPECT_THROW(namedTargets(names, {first, second}, {1.0}, "effort"), CommandError);
+  EXPECT_THROW(namedTargets(names, {first}, {std::nan("")}, "effort"), CommandError);
+  EXPECT_EQ(orderedTargets(names, {1.0, 2.0, 3.0, 4.0}).size(), 4u);
+  EXPECT_THROW(orderedTargets(names, {1.0}), CommandError);
+  EXPECT_THROW(orderedTargets(names, {1.0, 2.0, 3.0, INFINITY}), CommandError);
+}
+
+TEST(CommandTest, AJointsOwnGainsComeBeforeTheDefault)
+{
+  std::map<std::string, ServoGains> gains;
+  EXPECT_TRUE(std::isnan(positionCommand(0.1, "knee", gains).kp));
+  gains["default"].kp = 10.0;
+  gains["knee"].kp = 20.0;
+  EXPECT_EQ(positionCommand(0.1, "knee", gains).kp, 20.0);
+  EXPECT_EQ(positionCommand(0.1, "hip", gains).kp, 10.0);
+}
+
+TEST(MarkersTest, ArrowsOfContactsThatAreGoneAreDeleted)
+{
+  Simulator simulator(boxScenario());
+  simulator.step();
+  visualization_msgs::MarkerArray message;
+  const double scale = defaultForceScale(simulator);
+  EXPECT_NEAR(scale * 98.1, 0.5, 1e-15);  // half a metre for the weight
+  const std::size_t arrows = fillMarkers(simulator, ros::Time(0, 1), scale, 6, message);
+  ASSERT_EQ(arrows, simulator.contacts().size());
+  ASSERT_EQ(message.markers.size(), 7u);
+  for (std::size_t i = 0; i < 6; ++i)
+  {
+    EXPECT_EQ(message.markers[i].action,
+              i < arrows ? visualization_msgs::Marker::ADD : visualization_msgs::Marker::DELETE);
+  }
+  const visualization_msgs::Marker& arrow = message.markers.front();
+  const ContactState& contact = simulator.contacts().front();
+  EXPECT_NEAR(arrow.points[1].z - arrow.points[0].z, scale * contact.impulse.z() / 0.001, 1e-14);
+}
+
+}  // namespace
+}  // namespace frictional_contact_sim

@@ -1,0 +1,192 @@
+#include "frictional_contact_sim/ros/parameters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <fstream>
+#include <functional>
+#include <limits>
+
+#include "frictional_contact_sim/solver/registry.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using XmlRpc::XmlRpcValue;
+
+const char* const ROBOT = "<robot name=\"r\"/>";  // readParameters hands the document on without reading it
+
+XmlRpcValue list(const std::vector<double>& numbers)
+{
+  XmlRpcValue value;
+  value.setSize(static_cast<int>(numbers.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    value[static_cast<int>(i)] = numbers[i];
+  }
+  return value;
+}
+
+XmlRpcValue names(const std::vector<std::string>& strings)
+{
+  XmlRpcValue value;
+  value.setSize(static_cast<int>(strings.size()));
+  for (std::size_t i = 0; i < strings.size(); ++i)
+  {
+    value[static_cast<int>(i)] = strings[i];
+  }
+  return value;
+}
+
+/** @brief The one line that a parameter gets, empty when it is taken. */
+std::string complaint(const std::string& name, const XmlRpcValue& value)
+{
+  XmlRpcValue tree;
+  tree[name] = value;
+  try
+  {
+    readParameters(tree, ROBOT);
+  }
+  catch (const ParameterError& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ParametersTest, DefaultsAreThoseOfTheContract)
+{
+  const NodeParameters parameters = readParameters(XmlRpcValue(), ROBOT);
+  EXPECT_EQ(parameters.scenario.time_step, 0.001);
+  EXPECT_EQ(parameters.scenario.gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
+  EXPECT_EQ(parameters.scenario.stopping.tolerance, 1e-8);
+  EXPECT_TRUE(parameters.scenario.ground.has_value());
+  EXPECT_EQ(parameters.scenario.materials.fallback.friction, 0.8);
+  EXPECT_EQ(parameters.scenario.materials.fallback.restitution, 0.0);
+  EXPECT_EQ(parameters.real_time_factor, 1.0);
+  EXPECT_FALSE(parameters.start_paused);
+  EXPECT_EQ(parameters.num_steps, 0);
+  EXPECT_EQ(parameters.on_failure, FailurePolicy::STOP);
+  ASSERT_EQ(parameters.scenario.bodies.size(), 1u);
+  EXPECT_EQ(parameters.scenario.bodies[0].urdf_xml, ROBOT);
+  EXPECT_FALSE(parameters.scenario.bodies[0].pose.has_value());
+  EXPECT_THAT(parameters.warnings, IsEmpty());
+}
+
+TEST(ParametersTest, EveryRegisteredSolverIsTaken)
+{
+  for (const SolverEntry& entry : solverRegistry())
+  {
+    EXPECT_EQ(complaint("solver", XmlRpcValue(entry.name)), "");
+  }
+}
+
+TEST(ParametersTest, ValuesReachTheScenario)
+{
+  XmlRpcValue tree;
+  tree["gravity"] = list({1.0, 2.0, 3.0});
+  tree["base"] = "fixed";
+  tree["base_pose"]["xyz"] = list({0.1, 0.2, 0.3});
+  tree["base_pose"]["rpy"] = list({0.0, 0.0, 1.5707963267948966});
+  tree["initial_joint_positions"]["knee"] = 0.5;
+  tree["disable_collisions"].setSize(1);
+  tree["disable_collisions"][0] = names({"thigh", "shank"});
+  tree["ground"]["height"] = -1.0;
+  tree["materials"]["pairs"].setSize(1);
+  tree["materials"]["pairs"][0]["between"] = names({"rubber", "ground"});
+  tree["materials"]["pairs"][0]["friction"] = 1;  // an integer is a number
+  const Scenario scenario = readParameters(tree, ROBOT).scenario;
+  const BodySpec& body = scenario.bodies.at(0);
+  EXPECT_EQ(scenario.gravity, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(body.base, BaseType::FIXED);
+  EXPECT_EQ(body.pose->translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  // A quarter turn about z takes x to y; round-off of the cosine of pi/2.
+  EXPECT_LT((body.pose->linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(body.joints.at("knee").position, 0.5);
+  EXPECT_THAT(body.disable_collisions, ElementsAre(std::make_pair("thigh", "shank")));
+  EXPECT_EQ(scenario.ground->height, -1.0);
+  EXPECT_EQ(scenario.materials.pairs.at({"ground", "rubber"}).friction, 1.0);  // alphabetical order
+}
+
+TEST(ParametersTest, ALineNamesParameterAndWhatWasFoundAndExpected)
+{
+  EXPECT_THAT(complaint("time_step", XmlRpcValue("fast")),
+              testing::AllOf(HasSubstr("~time_step"), HasSubstr("'fast'"), HasSubstr("number > 0")));
+  EXPECT_THAT(complaint("time_step", XmlRpcValue(0.0)), HasSubstr("the number 0"));
+  EXPECT_THAT(complaint("default_friction", XmlRpcValue(-0.5)),
+              testing::AllOf(HasSubstr("~default_friction"), HasSubstr("-0.5"), HasSubstr(">= 0")));
+  EXPECT_THAT(complaint("default_restitution", XmlRpcValue(1.5)), HasSubstr("[0, 1]"));
+  EXPECT_THAT(complaint("ground", XmlRpcValue(1)), HasSubstr("~ground"));
+  EXPECT_THAT(complaint("base", XmlRpcValue("flying")), HasSubstr("auto, floating or fixed"));
+  EXPECT_THAT(complaint("gravity", list({0.0, -9.81})), HasSubstr("a list of 3"));
+  EXPECT_THAT(complaint("base_pose", list({0.0, 0.0})), HasSubstr("a list of 6"));
+  EXPECT_THAT(complaint("num_steps", XmlRpcValue(2.5)), HasSubstr("integer"));
+  EXPECT_THAT(complaint("start_paused", XmlRpcValue(1)), HasSubstr("true or false"));
+  EXPECT_THAT(complaint("disable_collisions", names({"a", "b"})), HasSubstr("pairs"));
+  EXPECT_THAT(complaint("on_failure", XmlRpcValue("explode")), HasSubstr("stop, pause, hold or accept"));
+  EXPECT_THAT(complaint("max_iterations", XmlRpcValue(0)), HasSubstr(">= 1"));
+  EXPECT_THAT(complaint("bag", XmlRpcValue("/nowhere/run.bag")), HasSubstr("/nowhere"));
+}
+
+TEST(ParametersTest, NumbersThatAreNotFiniteAreRefused)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const char* name : {"time_step", "tolerance", "default_friction", "real_time_factor", "publish_rate"})
+  {
+    EXPECT_THAT(complaint(name, XmlRpcValue(nan)), HasSubstr(name));
+    EXPECT_THAT(complaint(name, XmlRpcValue(infinity)), HasSubstr(name));
+  }
+  EXPECT_THAT(complaint("gravity", list({0.0, 0.0, nan})), HasSubstr("number 3"));
+}
+
+TEST(ParametersTest, AnUnknownSolverListsTheValidOnes)
+{
+  const std::string line = complaint("solver", XmlRpcValue("oracle"));
+  EXPECT_THAT(line, HasSubstr("oracle"));
+  for (const SolverEntry& entry : solverRegistry())
+  {
+    EXPECT_THAT(line, HasSubstr(entry.name));
+  }
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+TEST(ParametersTest, UnknownParametersAreNamedAtEveryLevel)
+{
+  XmlRpcValue tree;
+  tree["tolerence"] = 1e-8;
+  tree["ground"]["hight"] = 1.0;
+  tree["servo_gains"]["knee"]["ki"] = 1.0;
+  const NodeParameters parameters = readParameters(tree, ROBOT);
+  EXPECT_THAT(parameters.warnings, testing::UnorderedElementsAre(HasSubstr("~tolerence"), HasSubstr("~ground/hight"),
+                                                                 HasSubstr("~servo_gains/knee/ki")));
+}
+
+TEST(ParametersTest, ARobotOrAScenarioIsNeeded)
+{
+  EXPECT_THROW(readParameters(XmlRpcValue(), ""), ParameterError);
+}
+
+TEST(ParametersTest, ASetNumberOverridesTheScenarioFile)
+{
+  const std::string path = testing::TempDir() + "parameters_test.yaml";
+  std::ofstream(path) << "time_step: 0.002\ngravity: [0, 0, -1]\nbodies:\n  - {name: box, urdf: " << PROJECT_DIR
+                      << "/test/ros/box_10kg.urdf, base: floating}\n";
+  XmlRpcValue tree;
+  tree["scenario"] = path;
+  tree["time_step"] = 0.004;
+  tree["base"] = "fixed";
+  const NodeParameters parameters = readParameters(tree, "");
+  EXPECT_EQ(parameters.scenario.time_step, 0.004);
+  EXPECT_EQ(parameters.scenario.gravity.z(), -1.0);
+  EXPECT_EQ(parameters.scenario.bodies.at(0).base, BaseType::FLOATING);
+  EXPECT_THAT(parameters.warnings, ElementsAre(HasSubstr("~base: ignored")));
+}
+
+}  // namespace
+}  // namespace frictional_contact_sim
