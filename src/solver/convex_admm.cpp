@@ -25,16 +25,6 @@ ConvexAdmm::ConvexAdmm(const ConvexAdmmOptions& options) : ConvexSolver("convex_
   options_.validate();
 }
 
-bool ConvexAdmm::factor(const ConvexProblem& problem, double penalty)
-{
-  blocks_.assign(static_cast<std::size_t>(problem.W->blocks()) * ShiftedFactor::BLOCK_STRIDE, 0.0);
-  for (int i = 0; i < problem.W->blocks(); ++i)
-    for (int a = 0; a < problem.W->dimension(i); ++a)
-      blocks_[static_cast<std::size_t>(i * ShiftedFactor::BLOCK_STRIDE + a * (problem.W->dimension(i) + 1))] =
-          penalty / problem.step_lengths[i];
-  return factor_.factor(blocks_);
-}
-
 ConvexResult ConvexAdmm::doSolve(const ConvexProblem& problem, const ConvexBudget& budget, Eigen::VectorXd& r,
                                  Eigen::VectorXd& u)
 {
@@ -45,7 +35,7 @@ ConvexResult ConvexAdmm::doSolve(const ConvexProblem& problem, const ConvexBudge
   result.error = optimalityError(problem, u, r);
   y_ = r;
   x_ = (-1.0 / penalty) * metric_.cwiseProduct(u);
-  bool factored = factor(problem, penalty);
+  bool factored = factor_.factor(penalty * metric_.cwiseInverse());
   for (int k = 1; k <= options_.max_iterations; ++k)
   {
     if (!factored || !y_.allFinite())
@@ -86,7 +76,7 @@ ConvexResult ConvexAdmm::doSolve(const ConvexProblem& problem, const ConvexBudge
       const double factor_of_change = std::sqrt(primal / dual);
       penalty *= factor_of_change;
       x_ /= factor_of_change;
-      factored = factor(problem, penalty);
+      factored = factor_.factor(penalty * metric_.cwiseInverse());
     }
   }
   return result;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "options_check.h"
 
@@ -126,7 +127,7 @@ void PrimalDualIteration::start(const ConvexProblem& problem, const Eigen::Vecto
   factor_.setOperator(*problem.W);
   makeCones(problem);
   mean_step_length_ = std::exp(problem.step_lengths.array().log().mean());
-  const double speed = std::max(problem.c.lpNorm<Eigen::Infinity>(), 1e-12);
+  const double speed = std::max(problem.c.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
   r_ = r;
   for (const FixedRow& fixed : fixed_)
     r_[fixed.row] = 0.0;
@@ -152,39 +153,60 @@ double PrimalDualIteration::complementarity() const
   return cones_.empty() ? 0.0 : sum / static_cast<double>(cones_.size());
 }
 
+void PrimalDualIteration::spectralShift(const ConvexProblem& problem)
+{
+  bases_.assign(static_cast<std::size_t>(problem.W->blocks()), SquareMatrix<3>::Identity());
+  shift_.setZero(problem.W->rows());
+  constexpr double HALF_ROOT = 0.70710678118654752440;
+  for (const Cone& cone : cones_)
+  {
+    const LorentzSpectrum spectrum = inverseSquareSpectrum(cone.scaling);
+    SquareMatrix<3>& basis = bases_[static_cast<std::size_t>(cone.block)];
+    const int first = problem.W->offset(cone.block);
+    const double x = spectrum.direction[0];
+    const double y = spectrum.direction[1];
+    if (cone.dimension == 1)
+    {
+      shift_[cone.head] = spectrum.perpendicular;
+    }
+    else if (cone.head >= 0)
+    {
+      // Columns A^-1 v+, A^-1 v-, A^-1 v0, with A = diag(mu, 1, 1).
+      const double head = HALF_ROOT / cone.scale;
+      basis << head, head, 0.0, HALF_ROOT * x, -HALF_ROOT * x, -y, HALF_ROOT * y, -HALF_ROOT * y, x;
+      shift_[first] = spectrum.plus;
+      shift_[first + 1] = spectrum.minus;
+      if (cone.dimension == 3)
+        shift_[first + 2] = spectrum.perpendicular;
+    }
+    else
+    {
+      // A constant head: the tangential block of N^-2 is (I + 2 w_T w_T^T)/beta^2.
+      const int local = cone.tail - first;
+      shift_[cone.tail] = spectrum.perpendicular * (1.0 + 2.0 * spectrum.tangential * spectrum.tangential);
+      if (cone.dimension == 3)
+      {
+        basis.block<2, 2>(local, local) << x, -y, y, x;
+        shift_[cone.tail + 1] = spectrum.perpendicular;
+      }
+    }
+  }
+}
+
 bool PrimalDualIteration::factor(const ConvexProblem& problem)
 {
+  spectralShift(problem);
   const double largest = problem.step_lengths.cwiseInverse().maxCoeff();
+  for (const FixedRow& fixed : fixed_)
+    shift_[fixed.row] = INFINITE_SHIFT * largest;
   double regularisation = options_.regularisation;
   for (int attempt = 0; attempt < FACTOR_ATTEMPTS; ++attempt)
   {
-    blocks_.assign(static_cast<std::size_t>(problem.W->blocks()) * ShiftedFactor::BLOCK_STRIDE, 0.0);
-    const auto entry = [&](int block, int a, int b) -> double&
-    {
-      const int d = problem.W->dimension(block);
-      return blocks_[static_cast<std::size_t>(block * ShiftedFactor::BLOCK_STRIDE + a * d + b)];
-    };
     for (int i = 0; i < problem.W->blocks(); ++i)
-      for (int a = 0; a < problem.W->dimension(i); ++a)
-        entry(i, a, a) += regularisation / problem.step_lengths[i];
-    for (const Cone& cone : cones_)
-    {
-      const SquareMatrix<3> metric = cone.scaling.inverse.transpose() * cone.scaling.inverse;
-      const int first = problem.W->offset(cone.block);
-      for (int a = cone.head >= 0 ? 0 : 1; a < cone.dimension; ++a)
-        for (int b = cone.head >= 0 ? 0 : 1; b < cone.dimension; ++b)
-        {
-          const int row = a == 0 ? cone.head - first : cone.tail + a - 1 - first;
-          const int column = b == 0 ? cone.head - first : cone.tail + b - 1 - first;
-          entry(cone.block, row, column) += (a == 0 ? cone.scale : 1.0) * (b == 0 ? cone.scale : 1.0) * metric(a, b);
-        }
-    }
-    for (const FixedRow& fixed : fixed_)
-    {
-      const int local = fixed.row - problem.W->offset(fixed.block);
-      entry(fixed.block, local, local) += INFINITE_SHIFT * largest;
-    }
-    if (factor_.factor(blocks_))
+      for (int k = 0; k < problem.W->dimension(i); ++k)
+        shift_[problem.W->offset(i) + k] += regularisation / problem.step_lengths[i] *
+                                            bases_[static_cast<std::size_t>(i)].col(k).squaredNorm();
+    if (factor_.factor(bases_, shift_))
       return true;
     regularisation = std::max(100.0 * regularisation, 1e-14);
   }

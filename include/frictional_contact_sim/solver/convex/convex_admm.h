@@ -37,11 +37,8 @@ protected:
                        Eigen::VectorXd& u) override;
 
 private:
-  bool factor(const ConvexProblem& problem, double penalty);
-
   ConvexAdmmOptions options_;
   ShiftedFactor factor_;
-  std::vector<double> blocks_;
   Eigen::VectorXd metric_, r_, y_, y_old_, x_, velocity_;
 };
 

@@ -27,6 +27,7 @@ struct LorentzScaling
 {
   SquareMatrix<3> forward = SquareMatrix<3>::Identity();  ///< N
   SquareMatrix<3> inverse = SquareMatrix<3>::Identity();  ///< N^-1
+  double square = 1.0;  ///< beta^2, kept apart: from N it would be a difference of large numbers
   Vector<3> lambda = Vector<3>(1.0, 0.0, 0.0);
 
   Vector<3> x() const { return forward * lambda; }
@@ -86,6 +87,7 @@ inline bool scalePair(const Vector<3>& x, const Vector<3>& z, int dimension, Lor
   N.block<1, 2>(0, 1) = w.tail<2>().transpose();
   N.block<2, 1>(1, 0) = w.tail<2>();
   N.block<2, 2>(1, 1) = SquareMatrix<2>::Identity() + w.tail<2>() * w.tail<2>().transpose() / (1.0 + w[0]);
+  scaling.square = beta * beta;
   scaling.forward = beta * N;
   scaling.inverse = N / beta;
   scaling.inverse.block<1, 2>(0, 1) *= -1.0;
@@ -96,6 +98,33 @@ inline bool scalePair(const Vector<3>& x, const Vector<3>& z, int dimension, Lor
   return true;
 }
 
+/** @brief Spectral form of N^-2 on the light-cone axes: v+ = (1, s)/sqrt2, v- = (1, -s)/sqrt2, v0 perpendicular to s.
+ *  w_0 - |w_T| = 1/(w_0 + |w_T|) is exact, so that eigenvalues of very different size all keep their digits. */
+struct LorentzSpectrum
+{
+  Vector<2> direction = Vector<2>(1.0, 0.0);  ///< s = w_T/|w_T|
+  double plus = 1.0, minus = 1.0, perpendicular = 1.0;  ///< eigenvalues of N^-2
+  double tangential = 0.0;  ///< |w_T|
+};
+
+inline LorentzSpectrum inverseSquareSpectrum(const LorentzScaling& scaling)
+{
+  // The first column of N N^T = beta^2 (2 w w^T - J).
+  const double square = scaling.square;
+  const Vector<3> column = scaling.forward * scaling.forward.row(0).transpose() / square;
+  const double head = std::sqrt(std::max(1.0, 0.5 * (column[0] + 1.0)));
+  LorentzSpectrum spectrum;
+  const Vector<2> tail = column.tail<2>() / (2.0 * head);
+  spectrum.tangential = tail.norm();
+  if (spectrum.tangential > 0.0)
+    spectrum.direction = tail / spectrum.tangential;
+  const double growth = head + spectrum.tangential;
+  spectrum.plus = 1.0 / (square * growth * growth);
+  spectrum.minus = growth * growth / square;
+  spectrum.perpendicular = 1.0 / square;
+  return spectrum;
+}
+
 /** @brief The scaling of (N (lambda + t dx), N^-T (lambda + t dz)), dx and dz in scaled coordinates. */
 inline bool advance(LorentzScaling& scaling, const Vector<3>& x_scaled, const Vector<3>& z_scaled, int dimension)
 {
@@ -104,6 +133,7 @@ inline bool advance(LorentzScaling& scaling, const Vector<3>& x_scaled, const Ve
     return false;
   scaling.forward = (scaling.forward * local.forward).eval();
   scaling.inverse = (local.inverse * scaling.inverse).eval();
+  scaling.square *= local.square;
   scaling.lambda = local.lambda;
   return true;
 }

@@ -74,6 +74,7 @@ private:
   void makeCones(const ConvexProblem& problem);
   void addCone(int block, int head, int tail, int dimension, double scale, double constant);
   void startCone(const ConvexProblem& problem, Cone& cone, const Eigen::VectorXd& guess_u, double shift, double speed);
+  void spectralShift(const ConvexProblem& problem);
   bool factor(const ConvexProblem& problem);
   Vector<3> toCone(const Cone& cone, const Eigen::VectorXd& rows) const;
   void fromCone(const Cone& cone, const Vector<3>& z, Eigen::VectorXd& rows) const;
@@ -89,7 +90,8 @@ private:
     int block, row;
   };
   std::vector<FixedRow> fixed_;  ///< rows held at zero
-  std::vector<double> blocks_;
+  std::vector<SquareMatrix<3>> bases_;
+  Eigen::VectorXd shift_;
   double mean_step_length_ = 1.0;
   Eigen::VectorXd r_, u_, dual_, rhs_, dr_;
 };
