@@ -11,8 +11,9 @@ namespace frictional_contact_sim
 {
 namespace
 {
-// Measured: testing a listed pair takes 2 to 3 ns; the tree wins beyond some 60 free bodies.
-constexpr std::size_t MAX_LISTED = 2000;
+// Measured: a listed pair takes about 2 ns, and updating FCL's tree about 1 us for every moving body: the list is
+// faster up to some 300 free bodies.
+constexpr std::size_t MAX_LISTED = 50000;
 
 bool isHalfSpace(const Bounds& bounds)
 {
@@ -87,7 +88,7 @@ void BroadPhase::reset(std::vector<ShapePair> pairs, const std::vector<Bounds>& 
     tree_->manager.setup();
   }
   candidates_.clear();
-  candidates_.reserve(std::min<std::size_t>(MAX_LISTED, listed_.size()) + 16 * bounds.size());
+  candidates_.reserve(std::min<std::size_t>(listed_.size(), 16 * bounds.size()) + 16 * bounds.size());
 }
 
 const std::vector<ShapePair>& BroadPhase::candidates(const std::vector<Bounds>& bounds, double margin)

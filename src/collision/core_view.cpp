@@ -175,26 +175,30 @@ Eigen::Vector3d bestStart(const CoreView& a, const CoreView& b, const Eigen::Vec
 {
   Eigen::Vector3d best = start;
   double largest = separation(a, b, start);
-  const auto offer = [&](const Eigen::Vector3d& n)
+  const auto offer = [&](const Eigen::Vector3d& n, double distance)
   {
-    const double other = separation(a, b, n);
-    if (other > largest)
+    if (distance > largest)
     {
-      largest = other;
+      largest = distance;
       best = n;
     }
   };
   for (const CoreView* view : {&a, &b})
   {
+    const CoreView& other = view == &a ? b : a;
     const double sign = view == &a ? -1.0 : 1.0;
     for (const Polyhedron::Face& face : view->core().faces)
     {
-      offer(sign * (view->rotation * face.normal));
+      const Eigen::Vector3d outwards = view->rotation * face.normal;
+      Eigen::Vector3d nearest;
+      other.support(-outwards, nearest);
+      offer(sign * outwards, outwards.dot(nearest - view->translation) - face.offset);
     }
     if (view->shape->kind == ShapeKind::CYLINDER)
     {
-      offer(view->rotation.col(2));
-      offer(-view->rotation.col(2));
+      const Eigen::Vector3d axis = view->rotation.col(2);
+      offer(axis, separation(a, b, axis));
+      offer(-axis, separation(a, b, -axis));
     }
   }
   return best;

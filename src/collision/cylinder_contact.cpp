@@ -15,6 +15,7 @@ constexpr double OVER_FLAT = 1e-9;
 constexpr double FLAT_PREFERENCE_ROUND = 1e-13;
 constexpr double OVER_FLAT_ROUND = 1e-13;
 constexpr double LOOK_AHEAD_ANGLE = 0.1;
+constexpr double SHALLOW = 1e-3;  // times the size
 constexpr double PARALLEL = 0.1;  // angle up to which lines along each other bring the ends of their overlap
 
 void collideSphere(const ConvexShape& cylinder, const ConvexShape& sphere, const Eigen::Isometry3d& a_in_b,
@@ -140,6 +141,79 @@ void addCurveContacts(const CorePair& pair, const CurveContacts& curves, const F
     dropDuplicates(pair, first, found);
   }
 }
+/// Face axis of a box or cap of a cylinder that separates best; face and cap -1 for other shapes.
+FlatAxis bestOfFew(const CorePair& pair)
+{
+  const CylinderView a{pair.a};
+  FlatAxis best = capAxis(pair, true, a.axis());
+  const auto offer = [&](const FlatAxis& flat)
+  { best = flat.separation > best.separation - FLAT_PREFERENCE * pair.size ? flat : best; };
+  offer(capAxis(pair, true, -a.axis()));
+  if (pair.b.shape->kind == ShapeKind::CYLINDER)
+  {
+    offer(capAxis(pair, false, Eigen::Vector3d::UnitZ()));
+    offer(capAxis(pair, false, -Eigen::Vector3d::UnitZ()));
+  }
+  for (int face = 0; pair.b.shape->kind == ShapeKind::BOX && face < 6; ++face)
+  {
+    const FaceAxis axis = faceAxis(pair, false, face);
+    FlatAxis flat;
+    flat.face = axis.face;
+    flat.separation = axis.separation;
+    flat.normal = axis.normal;
+    offer(flat);
+  }
+  return best;
+}
+
+/**
+ * The common cases without GJK, which is slow on curved shapes that touch. When two points of the shapes are as far
+ * apart as s(n) along n, no other direction separates better and no points are closer: a proof for s >= 0, and for a
+ * shallow overlap as good as one.
+ */
+bool collideByCertificate(const CorePair& pair)
+{
+  const double shallow = -SHALLOW * pair.size;
+  const FlatAxis flat = bestOfFew(pair);
+  const double limit = pair.margin + pair.radii();
+  if (flat.separation > limit)
+  {
+    return true;
+  }
+  if (flat.separation >= shallow && tryFlat(pair, flat, flat.separation))
+  {
+    return true;
+  }
+  if (pair.b.shape->kind != ShapeKind::CYLINDER)
+  {
+    return false;
+  }
+  const LineParameters line =
+      closestOnLines(pair.a.translation, pair.a.rotation.col(2), pair.b.translation, pair.b.rotation.col(2));
+  const double half_a = pair.a.shape->half_length;
+  const double half_b = pair.b.shape->half_length;
+  const Eigen::Vector3d between = pair.a.translation + std::clamp(line.s, -half_a, half_a) * pair.a.rotation.col(2) -
+                                  pair.b.translation - std::clamp(line.t, -half_b, half_b) * pair.b.rotation.col(2);
+  if (between.norm() < SHALLOW * pair.size)
+  {
+    return false;
+  }
+  const CurveContacts curves = findCurveContacts(pair, between.normalized(), ClosestPoints());
+  const CurveContact& best = curves.best;
+  const double gap = best.normal.dot(best.point_a - best.point_b);
+  const double across = (best.point_a - best.point_b - gap * best.normal).norm();
+  const double tolerance = OVER_FLAT_ROUND * pair.size;
+  if (best.separation < shallow || !best.is_proper || std::abs(gap - best.separation) > tolerance ||
+      (!best.is_crossing && across > OVER_FLAT * pair.size))
+  {
+    return false;
+  }
+  if (best.separation <= limit)
+  {
+    addCurveContacts(pair, curves, flat);
+  }
+  return true;
+}
 }  // namespace
 
 void collideCylinder(const ConvexShape& a, const ConvexShape& b, const Eigen::Isometry3d& a_in_b, double margin,
@@ -151,6 +225,11 @@ void collideCylinder(const ConvexShape& a, const ConvexShape& b, const Eigen::Is
     return;
   }
   const CorePair pair(a, b, a_in_b, margin, manifold);
+  if (collideByCertificate(pair))
+  {
+    reduceAcross(pair);
+    return;
+  }
   ClosestPoints closest;
   const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
   if (separation(pair.a, pair.b, n) > margin + pair.radii())

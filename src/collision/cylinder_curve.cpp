@@ -69,6 +69,7 @@ void offerVertex(Search& search, const CylinderView& a, int vertex)
     contact.point_b = point;
     contact.point_a = a.rimPoint(cap, point - a.capCenter(cap));
     contact.normal = search.direction(contact.point_a - point);
+    contact.is_proper = true;
     contact.feature_a = lowestRimFeature(cap);
     contact.feature_b = vertexOf(vertex);
     search.offer(contact);
@@ -81,6 +82,7 @@ void offerVertex(Search& search, const CylinderView& a, int vertex)
   side.point_a = point - radial;
   side.is_on_axis_a = true;
   side.is_end = search.isBetweenCaps(a.view, point);
+  side.is_proper = side.is_end;
   side.feature_a = sideFeature(0);
   side.feature_b = vertexOf(vertex);
   search.offer(side);
@@ -119,6 +121,7 @@ void offerLine(Search& search, const CylinderView& a, const EdgeEnds& ends, Feat
     contact.feature_b = feature_b;
     contact.is_on_axis_b = is_cylinder;
     contact.is_end = Search::isWithin(t);
+    contact.is_proper = contact.is_end;
     search.offer(contact);
   }
   CurveContact side;
@@ -131,6 +134,7 @@ void offerLine(Search& search, const CylinderView& a, const EdgeEnds& ends, Feat
   side.feature_a = sideFeature(0);
   side.feature_b = feature_b;
   side.is_on_axis_b = is_cylinder;
+  side.is_proper = Search::isWithin(line.t) && search.isBetweenCaps(a.view, side.point_a);
   side.is_crossing = axis.cross(direction).norm() < PARALLEL_LINES * direction.norm();
   search.offer(side);
 }
@@ -165,6 +169,7 @@ void offerRimOfB(Search& search, const CylinderView& a, const CylinderView& b, i
   contact.point_a = contact.point_b - radial;
   contact.is_on_axis_a = true;
   contact.is_end = search.isBetweenCaps(a.view, contact.point_b);
+  contact.is_proper = contact.is_end;
   contact.feature_a = sideFeature(0);
   contact.feature_b = lowestRimFeature(cap);
   search.offer(contact);
@@ -182,6 +187,7 @@ void offerRims(Search& search, const CylinderView& a, const CylinderView& b, int
   contact.point_b = second.at(angle_2);
   contact.normal =
       acrossLines(search, first.tangent(angle_1), second.tangent(angle_2), contact.point_a - contact.point_b);
+  contact.is_proper = true;
   contact.feature_a = lowestRimFeature(cap_a);
   contact.feature_b = lowestRimFeature(cap_b);
   search.offer(contact);

@@ -69,6 +69,7 @@ struct CurveContact
   bool is_on_axis_a = false;  ///< point_a still on the axis: moved to the side along the normal
   bool is_on_axis_b = false;
   bool is_crossing = false;  ///< of two nearly parallel lines: its place is noise
+  bool is_proper = false;  ///< both points belong to their shapes
   bool is_end = false;  ///< end of a line on the side of the other
 };
 
@@ -82,7 +83,7 @@ struct CurveContacts
 
 /**
  * @brief Contacts of rim or side of cylinder a with vertices, edges, rim or side of b near the direction n.
- * @param closest its vertices of b are the candidates
+ * @param closest its vertices of b are the candidates (not for two cylinders)
  */
 CurveContacts findCurveContacts(const CorePair& pair, const Eigen::Vector3d& n, const ClosestPoints& closest);
 
