@@ -29,7 +29,9 @@ struct Robot
   std::vector<int> parent;  ///< of every body
   std::vector<int> shapes;  ///< handles
   std::vector<std::string> frame_names;
+  bool is_mounted = false;  ///< on a fixed base, no floating joint
   std::set<std::array<int, 2>> disabled;  ///< frames, the lower first
+  std::set<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape
 };
 
 std::uint64_t makeId(int a, int b, const PairContact& point)
@@ -89,7 +91,12 @@ struct CollisionWorld::Impl
     }
     const ShapeInfo& first = infos[i];
     const ShapeInfo& second = infos[k];
-    if (first.robot < 0 || first.robot != second.robot)
+    if (first.robot < 0 || second.robot < 0)
+    {
+      const ShapeInfo& moving = first.robot < 0 ? second : first;
+      return robots[moving.robot].disabled_static.count({moving.frame, first.robot < 0 ? i : k}) == 0;
+    }
+    if (first.robot != second.robot)
     {
       return true;
     }
@@ -155,6 +162,9 @@ int CollisionWorld::addRobot(const MultibodyModel& model)
 {
   const int index = static_cast<int>(impl_->robots.size());
   Robot robot;
+  robot.is_mounted = model.joints.front().type == JointType::FIXED &&
+                     std::none_of(model.joints.begin(), model.joints.end(),
+                                  [](const Joint& joint) { return joint.type == JointType::FLOATING; });
   for (const Joint& joint : model.joints)
   {
     robot.parent.push_back(joint.parent);
@@ -226,7 +236,8 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
   {
     const ShapeInfo& a = impl_->infos[pair.a];
     const ShapeInfo& b = impl_->infos[pair.b];
-    if (a.robot < 0 || a.robot != b.robot || !impl_->mayCollide(pair.a, pair.b))
+    const bool is_mounted = b.robot < 0 && impl_->robots[a.robot].is_mounted;
+    if ((a.robot != b.robot && !is_mounted) || !impl_->mayCollide(pair.a, pair.b))
     {
       continue;
     }
@@ -235,7 +246,15 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
     if (std::any_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
                     [](const PairContact& point) { return point.gap < OVERLAP_GAP; }))
     {
-      disablePair(a.robot, a.link, b.link);
+      if (is_mounted)
+      {
+        impl_->robots[a.robot].disabled_static.insert({a.frame, pair.b});
+        impl_->are_pairs_current = false;
+      }
+      else
+      {
+        disablePair(a.robot, a.link, b.link);
+      }
       disabled.push_back(a.link + " - " + b.link);
     }
   }

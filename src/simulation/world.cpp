@@ -221,14 +221,14 @@ World loadWorld(const Scenario& scenario)
     setCommands(spec, robot);
     setWrenches(spec, robot);
   }
-  for (const std::string& pair : world.collision.disableOverlaps())
-    world.warnings.push_back("links overlap at the start and will not collide: " + pair);
   if (scenario.ground)
   {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translation().z() = scenario.ground->height;
     world.collision.addStatic(HalfSpace{}, pose, "ground");
   }
+  for (const std::string& pair : world.collision.disableOverlaps())
+    world.warnings.push_back("links overlap at the start and will not collide: " + pair);
   world.pairs = PairTable(scenario.materials, surfaceSides(scenario, world.robots, world.collision));
   return world;
 }

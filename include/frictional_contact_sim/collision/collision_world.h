@@ -68,7 +68,8 @@ public:
 
   /**
    * @brief Disables the pairs of links *within one robot* that overlap now (initial pose; gap < -1e-9 m, so links that
-   * only touch still collide). Needs setPoses.
+   * only touch still collide), and those of a robot on a fixed base with static shapes: what is mounted in the ground
+   * can never leave it. Needs setPoses.
    * @return "link_1 - link_2" of each pair disabled
    */
   std::vector<std::string> disableOverlaps();
