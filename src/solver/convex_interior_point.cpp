@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/solver/convex/convex_interior_point.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "options_check.h"
@@ -32,36 +33,49 @@ ConvexResult ConvexInteriorPoint::doSolve(const ConvexProblem& problem, const Co
 {
   ConvexResult result;
   result.error = optimalityError(problem, u, r);
-  const bool warm = options_.warm_shift > 0.0 && !r.isZero(0.0);
-  iteration_.start(problem, r, u, warm ? options_.warm_shift * result.error : std::numeric_limits<double>::infinity());
+  if (options_.warm_shift > 0.0 && !r.isZero(0.0))
+  {
+    run(problem, budget, options_.warm_shift * result.error, r, u, result);
+    if (result.error <= budget.tolerance || result.status == ConvexStatus::INTERRUPTED)
+      return result;
+  }
+  run(problem, budget, std::numeric_limits<double>::infinity(), r, u, result);
+  return result;
+}
+
+void ConvexInteriorPoint::run(const ConvexProblem& problem, const ConvexBudget& budget, double shift,
+                              Eigen::VectorXd& r, Eigen::VectorXd& u, ConvexResult& result)
+{
+  iteration_.start(problem, r, u, shift);
+  result.status = ConvexStatus::MAX_ITERATIONS;
+  double run_best = std::numeric_limits<double>::infinity();
   int since_better = 0;
   for (int k = 1; k <= options_.max_iterations; ++k)
   {
     const double length = iteration_.step(problem);
-    result.iterations = k;
-    const double error = length > 0.0 ? optimalityError(problem, iteration_.u(), iteration_.r()) : result.error;
-    ++since_better;
+    ++result.iterations;
+    const double error = length > 0.0 ? optimalityError(problem, iteration_.u(), iteration_.r()) : run_best;
+    since_better = error < run_best ? 0 : since_better + 1;
+    run_best = std::min(run_best, error);
     if (error < result.error)
     {
-      since_better = 0;
       result.error = error;
       r = iteration_.r();
       u = iteration_.u();
     }
     if (result.error <= budget.tolerance)
-      return result;
+      return;
     if (length < SHORTEST_STEP || since_better >= PATIENCE)
     {
       result.status = length > 0.0 ? ConvexStatus::STAGNATED : ConvexStatus::FAILED;
-      return result;
+      return;
     }
     if (interrupted(budget))
     {
       result.status = ConvexStatus::INTERRUPTED;
-      return result;
+      return;
     }
   }
-  return result;
 }
 
 }  // namespace frictional_contact_sim

@@ -21,14 +21,21 @@ bool OuterLoop::record(double residual, const Eigen::VectorXd& r)
   }
   if (best_ <= tolerance_)
     return stop(SolverStatus::CONVERGED, "");
-  if (best_ < 0.9 * window_best_)
+  run_best_ = std::min(run_best_, residual);
+  if (run_best_ < 0.9 * window_best_)
   {
-    window_best_ = best_;
+    window_best_ = run_best_;
     since_ = 0;
   }
   else if (++since_ >= window_)
     return stop(SolverStatus::STAGNATED, "the outer iteration no longer reduces the residual");
   return false;
+}
+
+void OuterLoop::restart()
+{
+  run_best_ = window_best_ = std::numeric_limits<double>::infinity();
+  since_ = 0;
 }
 
 double OuterLoop::innerTolerance(double accuracy) const

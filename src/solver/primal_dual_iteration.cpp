@@ -204,8 +204,8 @@ bool PrimalDualIteration::factor(const ConvexProblem& problem)
   {
     for (int i = 0; i < problem.W->blocks(); ++i)
       for (int k = 0; k < problem.W->dimension(i); ++k)
-        shift_[problem.W->offset(i) + k] += regularisation / problem.step_lengths[i] *
-                                            bases_[static_cast<std::size_t>(i)].col(k).squaredNorm();
+        shift_[problem.W->offset(i) + k] +=
+            regularisation / problem.step_lengths[i] * bases_[static_cast<std::size_t>(i)].col(k).squaredNorm();
     if (factor_.factor(bases_, shift_))
       return true;
     regularisation = std::max(100.0 * regularisation, 1e-14);
@@ -240,7 +240,7 @@ double PrimalDualIteration::longestStep() const
   return step;
 }
 
-double PrimalDualIteration::step(const ConvexProblem& problem)
+double PrimalDualIteration::step(const ConvexProblem& problem, double centring)
 {
   problem.W->apply(r_, u_);
   u_ += problem.c;
@@ -250,12 +250,12 @@ double PrimalDualIteration::step(const ConvexProblem& problem)
     cone.target = -cone.scaling.lambda;
   direction();
   const double affine = std::min(1.0, longestStep());
-  const double centring = std::pow(1.0 - affine, 3) * complementarity();
+  const double target = std::max(centring, std::pow(1.0 - affine, 3) * complementarity());
   for (Cone& cone : cones_)
   {
     Vector<3> right = -jordanProduct(cone.scaling.lambda, cone.scaling.lambda);
     right -= jordanProduct(cone.affine_x, cone.affine_z);
-    right[0] += centring;
+    right[0] += target;
     cone.target = jordanDivide(cone.scaling.lambda, right);
   }
   direction();

@@ -46,7 +46,8 @@ Columns symmetricBlocks(const DelassusOperator& W, const std::vector<int>& offse
               block_of.begin() + offsets[static_cast<std::size_t>(i) + 1], i);
   const SparseRows rows = W.toSparse();
   std::vector<Eigen::Triplet<double>> entries;
-  const auto addZeros = [&](int i, int j) {
+  const auto addZeros = [&](int i, int j)
+  {
     for (int a = W.offset(i); a < W.offset(i + 1); ++a)
       for (int b = W.offset(j); b < W.offset(j + 1); ++b)
       {
@@ -108,7 +109,7 @@ void ShiftedFactor::Sparse::collectBlocks(const std::vector<int>& offsets)
       if (i == j)
         for (int c = 0; c < columns; ++c)
           diagonal[static_cast<std::size_t>(first + c)] = k + c * (stride + 1);
-      blocks.push_back({ i, j, k, stride });
+      blocks.push_back({i, j, k, stride});
       k += offsets[static_cast<std::size_t>(i) + 1] - offsets[static_cast<std::size_t>(i)];
     }
   }
@@ -177,10 +178,9 @@ void ShiftedFactor::transformDense(const std::vector<SquareMatrix<3>>& bases)
     {
       double* x = &shifted_(offsets_[i], j);
       if (offsets_[i + 1] - offsets_[i] == 3)
-        Eigen::Map<Vector<3>>{ x } = (bases[i].transpose() * Eigen::Map<const Vector<3>>(x)).eval();
+        Eigen::Map<Vector<3>>{x} = (bases[i].transpose() * Eigen::Map<const Vector<3>>(x)).eval();
       else if (offsets_[i + 1] - offsets_[i] == 2)
-        Eigen::Map<Vector<2>>{ x } =
-            (bases[i].topLeftCorner<2, 2>().transpose() * Eigen::Map<const Vector<2>>(x)).eval();
+        Eigen::Map<Vector<2>>{x} = (bases[i].topLeftCorner<2, 2>().transpose() * Eigen::Map<const Vector<2>>(x)).eval();
       else
         *x *= bases[i](0, 0);
     }

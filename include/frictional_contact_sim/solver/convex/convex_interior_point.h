@@ -4,7 +4,8 @@
  * @brief Interior point for the convex problem: iterations of primal_dual_iteration.h until the optimality error of
  * (r, W r + c) is below the tolerance. Reaches round-off also when W is rank deficient.
  *
- * A guess better than nothing is used: it is pushed inside by warm_shift times its own optimality error.
+ * A guess is used when it is not zero: it is pushed inside by warm_shift times its own optimality error. When that run
+ * gets stuck near the boundary a cold one follows.
  * Operator: W explicit (dense or block-sparse). Where the feasible set of (3.11) has no interior r grows without bound
  * and the method says STAGNATED or FAILED (Cadoux (2009), example 3.21).
  *
@@ -35,6 +36,9 @@ protected:
                        Eigen::VectorXd& u) override;
 
 private:
+  void run(const ConvexProblem& problem, const ConvexBudget& budget, double shift, Eigen::VectorXd& r,
+           Eigen::VectorXd& u, ConvexResult& result);
+
   ConvexInteriorPointOptions options_;
   PrimalDualIteration iteration_;
 };

@@ -24,6 +24,8 @@ public:
    * @param residual E at r
    */
   bool record(double residual, const Eigen::VectorXd& r);
+  /** @brief Forgets the stall count, not the best iterate. */
+  void restart();
   /** @brief Ends with the given status. The best iterate is kept. */
   bool stop(SolverStatus status, const char* message);
 
@@ -37,6 +39,7 @@ private:
   int window_;
   SolverResult& result_;
   double last_ = 1.0;
+  double run_best_ = std::numeric_limits<double>::infinity();  ///< since the last restart
   double best_ = std::numeric_limits<double>::infinity();
   double window_best_ = std::numeric_limits<double>::infinity();
   int since_ = 0;

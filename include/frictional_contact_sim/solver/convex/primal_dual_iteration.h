@@ -46,8 +46,12 @@ public:
    * @param shift distance from the boundary [m/s]; at or above the largest |c| the guess is forgotten
    */
   void start(const ConvexProblem& problem, const Eigen::VectorXd& r, const Eigen::VectorXd& u, double shift);
-  /** @brief One iteration. @return the step length t, 0 when the factorization or the scaling broke down. */
-  double step(const ConvexProblem& problem);
+  /**
+   * @brief One iteration.
+   * @param centring lower bound of the target sigma m [J]
+   * @return the step length t, 0 when the factorization or the scaling broke down
+   */
+  double step(const ConvexProblem& problem, double centring = 0.0);
 
   const Eigen::VectorXd& r() const { return r_; }
   /** @brief W r + c with the c of the last start() or step(). */

@@ -1,0 +1,107 @@
+#include "frictional_contact_sim/solver/interior_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/convex/slip_map.h"
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// A step this short no longer moves anything.
+constexpr double SHORTEST_STEP = 1e-10;
+}  // namespace
+
+void InteriorPointOptions::validate() const
+{
+  requireOption(slip_centring > 0.0 && slip_centring < 1.0, "interior_point.slip_centring", slip_centring, "in (0, 1)");
+  requireOption(warm_shift >= 0.0, "interior_point.warm_shift", warm_shift, ">= 0");
+  requireOption(stall_window >= 2, "interior_point.stall_window", stall_window, ">= 2");
+  requireOption(restarts >= 0, "interior_point.restarts", restarts, ">= 0");
+  step.validate();
+}
+
+InteriorPoint::InteriorPoint(const InteriorPointOptions& options)
+  : Solver("interior_point"), options_(options), iteration_(options.step)
+{
+  options_.validate();
+}
+
+void InteriorPoint::updateSlip(const DelassusProblem& problem)
+{
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    if (!law.isCoulomb() || law.coefficient == 0.0)
+      continue;
+    const int row = problem.W.offset(i);
+    convex_.c[row] = problem.q[row] + law.coefficient * u_.segment(row + 1, law.dimension() - 1).norm();
+  }
+}
+
+bool InteriorPoint::run(const DelassusProblem& problem, double shift, double slip_centring, OuterLoop& loop,
+                        SolverResult& result)
+{
+  const double mean_step = std::exp(stepLengths().array().log().mean());
+  problem.W.apply(guess_, u_);
+  u_ += problem.q;
+  updateSlip(problem);
+  u_ += convex_.c - problem.q;
+  iteration_.start(convex_, guess_, u_, shift);
+  double centring = 0.0;
+  while (result.iterations < stopping().max_iterations)
+  {
+    const double length = iteration_.step(convex_, centring);
+    if (length < SHORTEST_STEP)
+      return loop.stop(SolverStatus::STAGNATED, "the step length fell to zero");
+    ++result.iterations;
+    u_ = iteration_.u() - convex_.c + problem.q;
+    const double value = residual(problem, u_, iteration_.r());
+    if (loop.record(value, iteration_.r()))
+      return true;
+    if (timeIsUp())
+      return loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+    if (frictional_)
+    {
+      const double error = value * velocityScale(problem.q, u_, iteration_.r(), stepLengths(), problem.W);
+      centring = slip_centring * mean_step * error * error;
+    }
+    updateSlip(problem);
+  }
+  return loop.stop(SolverStatus::MAX_ITERATIONS, "iterations exhausted");
+}
+
+void InteriorPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  makeConeProblem(problem, stepLengths(), convex_);
+  frictional_ = std::any_of(problem.laws.begin(), problem.laws.end(),
+                            [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
+  guess_ = result.solution.r;
+  projectOntoSets(convex_, guess_);
+  problem.W.apply(guess_, u_);
+  u_ += problem.q;
+  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  const double first = residual(problem, u_, guess_);
+  if (loop.record(first, guess_))
+    return;
+  double shift = std::numeric_limits<double>::infinity();
+  if (options_.warm_shift > 0.0 && !guess_.isZero(0.0))
+    shift = options_.warm_shift * first * velocityScale(problem.q, u_, guess_, stepLengths(), problem.W);
+  double slip_centring = options_.slip_centring;
+  for (int attempt = 0; attempt <= options_.restarts; ++attempt)
+  {
+    loop.restart();
+    run(problem, shift, slip_centring, loop, result);
+    if (result.status != SolverStatus::STAGNATED)
+      return;
+    shift = std::numeric_limits<double>::infinity();
+    slip_centring *= 0.1;
+    guess_.setZero();
+  }
+}
+
+}  // namespace frictional_contact_sim
