@@ -2,11 +2,14 @@
 
 #include <stdexcept>
 
+#include "frictional_contact_sim/solver/ac_fixed_point.h"
 #include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/cadoux_fixed_point.h"
+#include "frictional_contact_sim/solver/ds_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
 #include "frictional_contact_sim/solver/fb_newton.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
+#include "frictional_contact_sim/solver/interior_point.h"
 #include "frictional_contact_sim/solver/portfolio.h"
 
 namespace frictional_contact_sim
@@ -30,10 +33,16 @@ const std::vector<SolverEntry>& solverRegistry()
        "Alart, Curnier (1991); Cadoux (2009), (4.6), appendix D"},
       {"ds_newton", &create<DsNewton>, "proximal semismooth Newton on De Saxce's projection function",
        "De Saxce, Feng (1998); Cadoux (2009), (4.8), appendices D.2, E"},
+      {"ds_fixed_point", &create<DsFixedPoint>, "projected iterations on De Saxce's formulation, adaptive step length",
+       "De Saxce, Feng (1998); Cadoux (2009), (4.8), (4.9)"},
+      {"ac_fixed_point", &create<AcFixedPoint>, "fixed point on Alart and Curnier's formulation, adaptive step length",
+       "Cadoux (2009), (4.7)"},
       {"fb_newton", &create<FbNewton>, "proximal semismooth Newton on the Fischer-Burmeister function of the cone",
        "Fukushima, Luo, Tseng (2002); Cadoux (2009), (4.11)"},
       {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
        "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
+      {"interior_point", &create<InteriorPoint>, "Nesterov-Todd scaling, slip speeds changed every iteration",
+       "Nesterov, Todd (1997); Acary, Armand, Nguyen, Shpakovych (2022)"},
       {"cadoux_fixed_point", &create<CadouxFixedPoint>, "fixed point on the slip speeds, convex problem over the cones",
        "Cadoux (2009), 4.7, (3.13), (3.24)"},
   };

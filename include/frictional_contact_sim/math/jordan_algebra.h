@@ -19,7 +19,7 @@
  *
  * Source: Cadoux (2009), (4.11); Fukushima, Luo, Tseng (2002), "Smoothing functions for second-order-cone
  * complementarity problems"; Pan, Chen (2009), "A damped Gauss-Newton method for the second-order cone complementarity
- * problem", for the B-subdifferential. Departure: the square-free formula of the eigenvalues.
+ * problem", for the B-subdifferential. Departure: the eigenvalues without cancellation.
  */
 #include <cmath>
 

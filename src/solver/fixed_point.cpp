@@ -1,0 +1,108 @@
+#include "frictional_contact_sim/solver/fixed_point.h"
+
+#include <cmath>
+
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Smallest and largest theta; beyond, the iteration has lost its sense.
+constexpr double SMALLEST_STEP = 1e-12;
+constexpr double LARGEST_STEP = 1e12;
+}  // namespace
+
+void FixedPointOptions::validate() const
+{
+  requireOption(first_step > 0.0 && std::isfinite(first_step), "fixed_point.first_step", first_step, "> 0");
+  requireOption(largest_ratio > 0.0 && largest_ratio < 2.0, "fixed_point.largest_ratio", largest_ratio, "in (0, 2)");
+  requireOption(smallest_ratio > 0.0 && smallest_ratio < largest_ratio, "fixed_point.smallest_ratio", smallest_ratio,
+                "in (0, largest_ratio)");
+  requireOption(shrink > 0.0 && shrink < 1.0, "fixed_point.shrink", shrink, "in (0, 1)");
+}
+
+FixedPoint::FixedPoint(std::string name, const FixedPointMap& map, ScaledContacts::Metric metric,
+                       const FixedPointOptions& options)
+  : Solver(std::move(name)), map_(map), metric_(metric), options_(options)
+{
+  options_.validate();
+}
+
+void FixedPoint::setOptions(const FixedPointOptions& options)
+{
+  options.validate();
+  options_ = options;
+}
+
+double FixedPoint::evaluate(const DelassusProblem& problem, const Eigen::VectorXd& z, Eigen::VectorXd& field)
+{
+  scaled_.velocity(z, field);
+  scaled_.unscaleImpulse(z, r_);
+  scaled_.unscaleVelocity(field, u_);
+  const double value = residual(problem, u_, r_);
+  for (int i = 0; i < problem.W.blocks(); ++i)
+    map_.field(scaled_.laws()[static_cast<std::size_t>(i)], &field[scaled_.offset(i)]);
+  return value;
+}
+
+void FixedPoint::advance(double theta)
+{
+  trial_ = z_ - theta * field_;
+  for (std::size_t i = 0; i < scaled_.laws().size(); ++i)
+  {
+    const int row = scaled_.offset(static_cast<int>(i));
+    map_.project(scaled_.laws()[i], &z_[row], &trial_[row]);
+  }
+}
+
+void FixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  scaled_.set(problem, stepLengths(), metric_);
+  scaled_.scaleImpulse(result.solution.r, z_);
+  double theta = options_.first_step;
+  double best = evaluate(problem, z_, field_);
+  for (result.iterations = 0; best > stopping().tolerance; ++result.iterations)
+  {
+    if (result.iterations >= stopping().max_iterations || timeIsUp())
+    {
+      const bool time = timeIsUp();
+      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
+      result.message = time ? "time limit reached" : "fixed-point iterations exhausted";
+      return;
+    }
+    advance(theta);
+    const double value = evaluate(problem, trial_, trial_field_);
+    if (!std::isfinite(value))
+    {
+      result.status = SolverStatus::NUMERICAL_FAILURE;
+      result.message = "the fixed-point iterations diverged";
+      return;
+    }
+    if (value < best)
+    {
+      best = value;
+      result.solution.r = r_;
+    }
+    const double change = (trial_ - z_).norm();
+    const double ratio = change > 0.0 ? theta * (trial_field_ - field_).norm() / change : 0.0;
+    if (change == 0.0 || theta < SMALLEST_STEP || theta > LARGEST_STEP)
+    {
+      result.status = SolverStatus::STAGNATED;
+      result.message = change == 0.0 ? "the iterate no longer changes" : "no step length leads on";
+      return;
+    }
+    if (options_.adapt && ratio > options_.largest_ratio)
+    {
+      theta *= options_.shrink;
+      continue;
+    }
+    z_.swap(trial_);
+    field_.swap(trial_field_);
+    if (options_.adapt && ratio < options_.smallest_ratio)
+      theta /= options_.shrink;
+  }
+  result.status = SolverStatus::CONVERGED;
+}
+
+}  // namespace frictional_contact_sim
