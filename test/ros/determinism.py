@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Two runs give the same bits, also when the machine is busy with something else."""
 import hashlib
+import io
 import subprocess
 import unittest
 
@@ -17,7 +18,6 @@ STEPS = 400  # 0.4 s: the quadruped drops 1 mm onto its feet and sinks into its 
 
 def digest(message):
     """Of all bytes of a message but wall-clock times."""
-    import io
     if isinstance(message, StepReport):
         message.real_time_factor = message.solve_time = 0.0
     buffer = io.BytesIO()

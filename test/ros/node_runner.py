@@ -1,9 +1,11 @@
 """Starts simulator_node from a test, with parameters of its own, and waits for its end."""
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import tempfile
+import time
 
 import rospy
 
@@ -56,13 +58,12 @@ class Node:
 
     def lines(self, severity):
         """Messages of one severity, without colours."""
-        text = self.stderr().replace("\x1b[0m", "").replace("\x1b[31m", "").replace("\x1b[33m", "")
-        return [line for line in text.splitlines() if line.startswith(f"[{severity}]")]
+        text = re.sub(r"\x1b\[\d*m", "", self.stderr())
+        return [line for line in text.splitlines() if re.match(rf"\[ *{severity}\]", line)]
 
 
 def wait_until(condition, timeout=TIMEOUT):
     """True when the condition comes to hold in time (wall clock)."""
-    import time
     end = time.monotonic() + timeout
     while time.monotonic() < end:
         if condition():
