@@ -49,12 +49,13 @@ void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_le
 }
 
 double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off)
+                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off,
+                   double impulse_cap)
 {
   if (errors != nullptr)
     errors->resize(static_cast<Eigen::Index>(laws.size()));
   double worst = 0.0;
-  double scale = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  double impulse = 0.0;
   int row = 0;
   for (std::size_t i = 0; i < laws.size(); ++i)
   {
@@ -67,10 +68,11 @@ double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_len
     // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
     if (!(error <= worst))
       worst = error;
-    scale = std::max(scale, r.segment(row, dimension).norm() / step_lengths[index]);
+    impulse = std::max(impulse, r.segment(row, dimension).norm() / step_lengths[index]);
     row += dimension;
   }
-  return worst / scale;
+  const double velocity = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  return worst / std::max(velocity, std::min(impulse, impulse_cap * velocity));
 }
 
 double localResidual(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,

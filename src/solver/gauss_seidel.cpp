@@ -94,7 +94,9 @@ void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
     result.iterations = last ? k : k + 1;
     if (!last && change > LIKELY * tolerance && (k + 1) % options_.check_interval != 0)
       continue;
-    const double value = localResidual(problem, stepLengths(), r, velocity_);
+    problem.W.apply(r, velocity_);
+    velocity_ += problem.q;
+    const double value = residual(problem, velocity_, r);
     if (value <= tolerance)
     {
       result.status = SolverStatus::CONVERGED;

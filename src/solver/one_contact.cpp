@@ -10,7 +10,10 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double SINGULAR = 1e-14;
+/// det S below this share of trace^2: one tangential direction cannot move, and S is raised.
+constexpr double SINGULAR = 1e-12;
+/// The raise relative to the trace of W: a compromise between the error it makes and the noise it lets through.
+constexpr double RAISE = 1e-12;
 constexpr int MAX_ROOT_STEPS = 60;
 
 /** The tangential problem after elimination of the normal one; (S + kappa I)^-1 = (adj S + kappa I) / det(S + kappa I).
@@ -71,8 +74,8 @@ Vector<3> solveCoulomb(const SquareMatrix<3>& W, const Vector<3>& q, double mu)
 {
   if (q[0] >= 0.0)
     return Vector<3>::Zero();
-  const double raise = SINGULAR * W.trace();
-  const double W_NN = W(0, 0) + raise;
+  const double raise = RAISE * W.trace();
+  const double W_NN = W(0, 0) > raise ? W(0, 0) : raise;
   if (!(W_NN > 0.0))
     return Vector<3>::Zero();
   const double normal_0 = -q[0] / W_NN;
@@ -83,7 +86,8 @@ Vector<3> solveCoulomb(const SquareMatrix<3>& W, const Vector<3>& q, double mu)
   branch.mu = mu;
   branch.coupling = W.block<1, 2>(0, 1).transpose() / W_NN;
   SquareMatrix<2> S = W.block<2, 2>(1, 1) - W.block<2, 1>(1, 0) * branch.coupling.transpose();
-  S.diagonal().array() += raise;
+  if (S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0) <= SINGULAR * S.trace() * S.trace())
+    S.diagonal().array() += raise;
   branch.b = q.tail<2>() + W.block<2, 1>(1, 0) * normal_0;
   branch.trace = S.trace();
   branch.determinant = std::max(S(0, 0) * S(1, 1) - S(0, 1) * S(1, 0), raise * raise);
@@ -103,13 +107,13 @@ Vector<2> solveCoulomb(const SquareMatrix<2>& W, const Vector<2>& q, double mu)
 {
   if (q[0] >= 0.0)
     return Vector<2>::Zero();
-  const double raise = SINGULAR * W.trace();
-  const double W_NN = W(0, 0) + raise;
+  const double raise = RAISE * W.trace();
+  const double W_NN = W(0, 0) > raise ? W(0, 0) : raise;
   if (!(W_NN > 0.0))
     return Vector<2>::Zero();
   const double normal_0 = -q[0] / W_NN;
   const double coupling = W(0, 1);
-  const double S = std::max(W(1, 1) + raise - coupling * W(1, 0) / W_NN, raise);
+  const double S = std::max(W(1, 1) - coupling * W(1, 0) / W_NN, raise);
   const double b = q[1] + W(1, 0) * normal_0;
   const double stick = -b / S;
   const double normal = normal_0 - coupling * stick / W_NN;

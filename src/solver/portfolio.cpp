@@ -52,6 +52,13 @@ void Portfolio::setOptions(const PortfolioOptions& options)
   options_ = options;
 }
 
+double Portfolio::criterion(const DelassusProblem& problem, const Eigen::VectorXd& r)
+{
+  problem.W.apply(r, velocity_);
+  velocity_ += problem.q;
+  return residual(problem, velocity_, r);
+}
+
 bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result)
 {
   budget = std::min(budget, stopping().max_iterations - used_);
@@ -62,7 +69,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   delegate(method, problem, stopping().tolerance, budget, result);
   used_ += result.iterations;
   result.iterations = used_;
-  const double value = localResidual(problem, stepLengths(), result.solution.r, velocity_);
+  const double value = criterion(problem, result.solution.r);
   if (value < best_value_)
   {
     best_value_ = value;
@@ -78,7 +85,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
   best_r_ = result.solution.r;
-  best_value_ = localResidual(problem, stepLengths(), best_r_, velocity_);
+  best_value_ = criterion(problem, best_r_);
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   if (!done)

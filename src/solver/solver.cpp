@@ -95,7 +95,7 @@ bool Solver::timeIsUp() const
 
 double Solver::residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const
 {
-  return lawResidual(problem.laws, step_lengths_, free_velocity_, u, r);
+  return lawResidual(problem.laws, step_lengths_, free_velocity_, u, r, nullptr, 0.0, IMPULSE_CAP);
 }
 
 void Solver::delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
@@ -123,6 +123,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   {
     result.solution.u.resize(0);
     result.status = SolverStatus::CONVERGED;
+    criterion_ = 0.0;
     return 0.0;
   }
   doSolve(problem, result);
@@ -132,7 +133,9 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
     result.status = SolverStatus::NUMERICAL_FAILURE;
     result.message = "an impulse is not finite";
   }
-  return localResidual(problem, step_lengths_, result.solution.r, result.solution.u);
+  const double value = localResidual(problem, step_lengths_, result.solution.r, result.solution.u);
+  criterion_ = residual(problem, result.solution.u, result.solution.r);
+  return value;
 }
 
 void Solver::judge(double residual, double tolerance, SolverResult& result) const
@@ -142,7 +145,7 @@ void Solver::judge(double residual, double tolerance, SolverResult& result) cons
     result.solver = name_;
   if (result.tried.empty())
     result.tried.push_back(name_);
-  if (residual <= tolerance)
+  if (residual <= tolerance && criterion_ <= tolerance)
   {
     result.status = SolverStatus::CONVERGED;
     result.message.clear();
@@ -150,7 +153,8 @@ void Solver::judge(double residual, double tolerance, SolverResult& result) cons
   else if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
   {
     result.status = SolverStatus::STAGNATED;
-    result.message = "the method reported convergence, the residual does not confirm it";
+    result.message = residual <= tolerance ? "impulses run away: there may be no solution"
+                                           : "the method reported convergence, the residual does not confirm it";
   }
   result.seconds = secondsSince(start_);
 }

@@ -17,7 +17,7 @@
  *
  * Source: Bonnefon, Daviet (2011) give the same root as a quartic in tan(theta/2); the scalar equation in kappa needs
  * no case distinction and does not lose digits. Cadoux (2009), 4.8.2, for its use contact by contact. Where W is
- * singular its diagonal is raised by 1e-14 of its trace.
+ * singular its diagonal is raised by 1e-12 of the trace of W (only S, and only then).
  */
 #include "frictional_contact_sim/math/cone.h"
 #include "frictional_contact_sim/problem/law.h"

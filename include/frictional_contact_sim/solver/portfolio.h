@@ -47,6 +47,7 @@ protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
+  double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result);
 
   PortfolioOptions options_;

@@ -93,18 +93,25 @@ protected:
    */
   void delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
                 SolverResult& result) const;
-  /** @brief E of the problem being solved at (u, r), u = W r + q given; costs no product with W. */
+  /**
+   * @brief The stopping criterion at (u, r), u = W r + q given; costs no product with W: E of the problem being solved,
+   * but impulses count in its scale at most IMPULSE_CAP times as much as velocities. Where no solution exists they run
+   * away and plain E would vanish.
+   */
   double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
 
 private:
   double solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
   void judge(double residual, double tolerance, SolverResult& result) const;
 
+  static constexpr double IMPULSE_CAP = 1e3;
+
   std::string name_;
   StoppingOptions stopping_;
   std::chrono::steady_clock::time_point start_;
   Eigen::VectorXd step_lengths_;
   double free_velocity_ = 0.0;
+  double criterion_ = 0.0;  ///< stopping criterion of the last answer
   GlobalResidualData global_;
   Solution warm_;
   std::unique_ptr<DelassusReduction> reduction_;
