@@ -153,10 +153,10 @@ TEST(DoublePendulumImpactTest, NewtonRestitutionGainsTheEnergyOfKaneAndLevinson)
 /** Error of the ratio of angular velocities after and before a rocking block's impact. */
 double housnerError(double h)
 {
-  const double width = 0.2;
-  const double tall = 0.6;
+  const double width = 1.0;
+  const double tall = 3.0;
   const double slenderness = std::atan(width / tall);
-  const double tilt = 0.05;
+  const double tilt = 0.2;
   Scenario scene = groundScene(2.0);
   scene.time_step = h;
   BodySpec& block = addBody(scene, "block", boxUrdf({width, 0.5, tall}, 3.0), poseAt(0.0, 0.0, 0.0));

@@ -48,7 +48,7 @@ protected:
 
 private:
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
-  bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result);
+  bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
