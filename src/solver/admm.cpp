@@ -1,0 +1,152 @@
+#include "frictional_contact_sim/solver/admm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Iterations without the residual falling by a tenth before giving up: the method is not monotone.
+constexpr int STALL_WINDOW = 2000;
+
+/// Barzilai-Borwein curvature of (dz, dl) and how much it can be trusted.
+struct Curvature
+{
+  double value = 0.0;
+  double correlation = 0.0;
+};
+
+Curvature curvature(const Eigen::VectorXd& dz, const Eigen::VectorXd& dl, const Eigen::VectorXd& metric)
+{
+  const double product = dz.dot(dl);
+  const double z = dz.cwiseQuotient(metric).dot(dz);
+  const double l = dl.cwiseProduct(metric).dot(dl);
+  Curvature result;
+  if (!(product > 0.0) || !(z > 0.0) || !(l > 0.0))
+    return result;
+  const double steepest = l / product;
+  const double minimal = product / z;
+  result.value = 2.0 * minimal > steepest ? minimal : steepest - 0.5 * minimal;
+  result.correlation = product / std::sqrt(z * l);
+  return result;
+}
+}  // namespace
+
+void AdmmOptions::validate() const
+{
+  requireOption(penalty > 0.0, "admm.penalty", penalty, "> 0");
+  requireOption(update_interval >= 1, "admm.update_interval", update_interval, ">= 1");
+  requireOption(correlation > 0.0 && correlation < 1.0, "admm.correlation", correlation, "in (0, 1)");
+  requireOption(convergence > 0.0, "admm.convergence", convergence, "> 0");
+  requireOption(refactor_ratio > 1.0, "admm.refactor_ratio", refactor_ratio, "> 1");
+}
+
+Admm::Admm(const AdmmOptions& options) : Solver("admm"), options_(options)
+{
+  options_.validate();
+}
+
+void Admm::updateShift(const DelassusProblem& problem)
+{
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const int row = problem.W.offset(i);
+    if (law.isCoulomb() && law.coefficient > 0.0)
+      convex_.c[row] = problem.q[row] + law.coefficient * lambda_.segment(row + 1, law.dimension() - 1).norm();
+  }
+}
+
+void Admm::remember()
+{
+  old_r_ = r_;
+  old_y_ = y_;
+  old_lambda_ = lambda_;
+  old_lambda_hat_ = lambda_hat_;
+}
+
+double Admm::spectralPenalty(int iteration) const
+{
+  const Curvature smooth = curvature(r_ - old_r_, lambda_hat_ - old_lambda_hat_, metric_);
+  const Curvature sets = curvature(old_y_ - y_, lambda_ - old_lambda_, metric_);
+  const bool trust_smooth = smooth.correlation > options_.correlation;
+  const bool trust_sets = sets.correlation > options_.correlation;
+  double penalty = penalty_;
+  if (trust_smooth && trust_sets)
+    penalty = std::sqrt(smooth.value * sets.value);
+  else if (trust_smooth)
+    penalty = smooth.value;
+  else if (trust_sets)
+    penalty = sets.value;
+  const double limit = 1.0 + options_.convergence / (static_cast<double>(iteration) * iteration);
+  penalty = std::clamp(penalty, penalty_ / limit, penalty_ * limit);
+  return std::clamp(penalty, 1e-8, 1e8);
+}
+
+void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  makeConeProblem(problem, stepLengths(), convex_);
+  fillMetric(convex_, Metric::BLOCK, metric_);
+  inverse_metric_ = metric_.cwiseInverse();
+  factor_.setOperator(problem.W);
+  penalty_ = options_.penalty;
+  y_ = result.solution.r;
+  projectOntoSets(convex_, y_);
+  problem.W.apply(y_, u_);
+  u_ += problem.q;
+  OuterLoop loop(stopping().tolerance, STALL_WINDOW, result);
+  if (loop.record(residual(problem, u_, y_), y_))
+    return;
+  // The multiplier of the start is u~ of the guess, zero for a cold one.
+  lambda_ = y_.isZero(0.0) ? Eigen::VectorXd::Zero(y_.size()).eval() : u_;
+  lambda_hat_ = lambda_;
+  r_ = y_;
+  x_ = -metric_.cwiseProduct(lambda_) / penalty_;
+  remember();
+  bool factored = factor_.factor(penalty_ * inverse_metric_);
+  for (int k = 1; k <= stopping().max_iterations; ++k)
+  {
+    if (!factored || !y_.allFinite())
+    {
+      loop.stop(SolverStatus::NUMERICAL_FAILURE, "W + rho D^-1 could not be factored");
+      return;
+    }
+    result.iterations = k;
+    updateShift(problem);
+    lambda_hat_ = penalty_ * inverse_metric_.cwiseProduct(y_ - x_);
+    r_ = lambda_hat_ - convex_.c;
+    factor_.solve(r_, r_);
+    lambda_hat_ -= penalty_ * inverse_metric_.cwiseProduct(r_);
+    x_ += r_;
+    y_ = x_;
+    projectOntoSets(convex_, y_);
+    x_ -= y_;
+    lambda_ = -penalty_ * inverse_metric_.cwiseProduct(x_);
+    problem.W.apply(y_, u_);
+    u_ += problem.q;
+    if (loop.record(residual(problem, u_, y_), y_))
+      return;
+    if (timeIsUp())
+    {
+      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+      return;
+    }
+    if (k % options_.update_interval != 0)
+      continue;
+    const double penalty = spectralPenalty(k);
+    remember();
+    if (std::max(penalty / penalty_, penalty_ / penalty) < options_.refactor_ratio)
+      continue;
+    x_ *= penalty_ / penalty;
+    penalty_ = penalty;
+    factored = factor_.factor(penalty_ * inverse_metric_);
+  }
+  loop.stop(SolverStatus::MAX_ITERATIONS, "iterations exhausted");
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,74 @@
+#include "frictional_contact_sim/solver/haslinger.h"
+
+#include <algorithm>
+
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/convex/slip_map.h"
+#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+void HaslingerOptions::validate() const
+{
+  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "haslinger.inner_accuracy", inner_accuracy, "in (0, 1)");
+  requireOption(relaxation > 0.0 && relaxation <= 1.0, "haslinger.relaxation", relaxation, "in (0, 1]");
+  requireOption(stall_window >= 2, "haslinger.stall_window", stall_window, ">= 2");
+}
+
+Haslinger::Haslinger(const HaslingerOptions& options, std::unique_ptr<ConvexSolver> inner)
+  : Solver("haslinger")
+  , options_(options)
+  , inner_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+{
+  options_.validate();
+}
+
+void Haslinger::updateThresholds(const DelassusProblem& problem, double relaxation)
+{
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    if (!law.isCoulomb())
+      continue;
+    const double target = law.coefficient * std::max(0.0, r_[problem.W.offset(i)]);
+    thresholds_[i] += relaxation * (target - thresholds_[i]);
+    convex_.sets[static_cast<std::size_t>(i)].parameter = thresholds_[i];
+  }
+}
+
+void Haslinger::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  const bool frictional = std::any_of(problem.laws.begin(), problem.laws.end(),
+                                      [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
+  r_ = result.solution.r;
+  thresholds_.setZero(problem.W.blocks());
+  makeCylinderProblem(problem, stepLengths(), thresholds_, convex_);
+  updateThresholds(problem, 1.0);
+  projectOntoSets(convex_, r_);
+  problem.W.apply(r_, u_);
+  u_ += problem.q;
+  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  if (loop.record(residual(problem, u_, r_), r_))
+    return;
+  ConvexBudget budget;
+  budget.interrupted = [this] { return timeIsUp(); };
+  while (result.iterations < stopping().max_iterations)
+  {
+    const double relative = frictional ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
+    budget.tolerance = relative * velocityScale(problem.q, u_, r_, stepLengths(), problem.W);
+    inner_->solve(convex_, budget, r_, u_);
+    ++result.iterations;
+    if (loop.record(residual(problem, u_, r_), r_))
+      return;
+    if (timeIsUp())
+    {
+      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+      return;
+    }
+    updateThresholds(problem, options_.relaxation);
+  }
+  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
+}
+
+}  // namespace frictional_contact_sim
