@@ -2,7 +2,7 @@
 """Fails on any #include that DESIGN.md's module table does not allow.
 
 A module may include itself, the modules below it that the table names (and what those may include), the C++ standard
-library and Eigen, and the third-party headers listed here. Headers marked as private appear in .cpp files only.
+library and Eigen, and the third-party headers listed here; these only below src/, FCL and urdfdom in .cpp files.
 """
 import pathlib
 import re
@@ -23,15 +23,16 @@ MODULES = {
     "rolling": ["math", "solver"],
     "ros": ["simulation"],
 }
-# Third-party headers by first path element (or whole name): the modules whose .cpp files may include them.
+# Third-party headers by first path element (or whole name): the modules that may include them below src/.
 PRIVATE = {
     "fclib.h": ["problem"], "fclib.hpp": ["problem"], "hdf5.h": ["problem"], "H5Cpp.h": ["problem"],
     "cholmod.h": ["problem", "solver"], "suitesparse": ["problem", "solver"],
     "fcl": ["collision"], "assimp": ["collision"], "libqhull_r": ["collision"], "libqhullcpp": ["collision"],
     "urdf_parser": ["model"], "urdf_model": ["model"], "urdf_world": ["model"], "urdf": ["model"],
-    "tinyxml2.h": ["model"], "tinyxml.h": ["model"], "rospack": ["model"],
+    "console_bridge": ["model"], "tinyxml2.h": ["model"], "tinyxml.h": ["model"], "rospack": ["model"],
     "yaml-cpp": ["simulation"],
 }
+CPP_ONLY = {"fcl", "urdf_parser", "urdf_model", "urdf_world", "urdf"}  # DESIGN.md, rule 10: not in private headers either
 ROS = {"ros", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs", "rosgraph_msgs",
        "tf2_msgs", "trajectory_msgs", "diagnostic_msgs", "xmlrpcpp", "XmlRpcValue.h", "XmlRpcClient.h", "XmlRpc.h",
        "rosbag", "topic_tools", "diagnostic_updater", "tf2_ros", "tf2"}
@@ -54,18 +55,16 @@ def closure(module):
 
 
 def place(path):
-    """(module or kind, is this a public header) of a file; kind is tools, test or benchmark outside the modules."""
+    """(module, is it a header, is it a public one) of a file; outside the modules the module is tools, test, ..."""
     parts = path.relative_to(ROOT).parts
-    if parts[0] == "include":
-        return parts[2], True
-    if parts[0] == "src":
-        return parts[1], path.suffix == ".h"
-    return parts[0], False
+    public = parts[0] == "include"
+    module = parts[2] if public else parts[1] if parts[0] == "src" else parts[0]
+    return module, path.suffix == ".h", public
 
 
 def violation(path, quoted, name):
     """Why this include is not allowed, or None."""
-    module, is_header = place(path)
+    module, is_header, is_public = place(path)
     parts = name.split("/")
     first = parts[0]
     if first == PACKAGE and len(parts) == 2:  # generated message or service
@@ -89,7 +88,7 @@ def violation(path, quoted, name):
     if first in PRIVATE:
         if module not in PRIVATE[first]:
             return f"{first} belongs to {' and '.join(PRIVATE[first])}"
-        return f"{first} belongs into .cpp files" if is_header else None
+        return f"{first} belongs into .cpp files" if is_header and (is_public or first in CPP_ONLY) else None
     if first in TOOL_HEADERS:
         return "command-line and JSON headers belong to tools"
     return "not in the table of scripts/check_layers.py"
@@ -100,7 +99,7 @@ def main():
              for path in sorted((ROOT / folder).rglob(suffix))]
     failures = 0
     for path in files:
-        module, _ = place(path)
+        module = place(path)[0]
         top = path.relative_to(ROOT).parts[0]
         if top in ("include", "src") and module not in MODULES and module != "tools":
             print(f"{path.relative_to(ROOT)}: module {module} is not in DESIGN.md's table")
