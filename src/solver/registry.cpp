@@ -4,11 +4,16 @@
 
 #include "frictional_contact_sim/solver/ac_fixed_point.h"
 #include "frictional_contact_sim/solver/ac_newton.h"
+#include "frictional_contact_sim/solver/admm.h"
 #include "frictional_contact_sim/solver/cadoux_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
+#include "frictional_contact_sim/solver/fb_bfgs.h"
+#include "frictional_contact_sim/solver/fb_levenberg_marquardt.h"
 #include "frictional_contact_sim/solver/fb_newton.h"
+#include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
+#include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/interior_point.h"
 #include "frictional_contact_sim/solver/portfolio.h"
 
@@ -39,10 +44,21 @@ const std::vector<SolverEntry>& solverRegistry()
        "Cadoux (2009), (4.7)"},
       {"fb_newton", &create<FbNewton>, "proximal semismooth Newton on the Fischer-Burmeister function of the cone",
        "Fukushima, Luo, Tseng (2002); Cadoux (2009), (4.11)"},
+      {"fb_newton_smoothed", &create<FbNewtonSmoothed>,
+       "Newton on smoothed Fischer-Burmeister, smoothing driven to zero",
+       "Fukushima, Luo, Tseng (2002); Cadoux (2009), 4.2.3"},
+      {"fb_levenberg_marquardt", &create<FbLevenbergMarquardt>, "damped Gauss-Newton on the Fischer-Burmeister merit",
+       "Cadoux (2009), 4.5.2, (4.14)"},
+      {"fb_bfgs", &create<FbBfgs>, "limited-memory quasi-Newton on the Fischer-Burmeister merit, Wolfe line search",
+       "Cadoux (2009), 4.3.2, 4.5.3; Nocedal, Wright (2006)"},
       {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
        "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
       {"interior_point", &create<InteriorPoint>, "Nesterov-Todd scaling, slip speeds changed every iteration",
        "Nesterov, Todd (1997); Acary, Armand, Nguyen, Shpakovych (2022)"},
+      {"admm", &create<Admm>, "proximal splitting on the law, adaptive spectral penalty",
+       "Boyd et al. (2011); Xu, Figueiredo, Goldstein (2017)"},
+      {"haslinger", &create<Haslinger>, "fixed point on the friction thresholds, Tresca's convex problem inside",
+       "Haslinger (1983); Cadoux (2009), 4.6, (4.17)"},
       {"cadoux_fixed_point", &create<CadouxFixedPoint>, "fixed point on the slip speeds, convex problem over the cones",
        "Cadoux (2009), 4.7, (3.13), (3.24)"},
   };

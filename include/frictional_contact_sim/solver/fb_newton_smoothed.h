@@ -1,0 +1,53 @@
+#pragma once
+/**
+ * @file fb_newton_smoothed.h
+ * @brief fb_newton_smoothed: Newton on the smoothed Fischer-Burmeister system, the smoothing driven to zero.
+ *
+ *   for alpha = first_smoothing |q|_inf, decrease alpha, ...:   Phi_alpha of solver/fb_system.h
+ *     a few steps  J d = -Phi_alpha,  z <- z + t d,  t by backtracking on 1/2 |Phi_alpha|^2,
+ *     until |Phi_alpha| <= inner_share alpha sqrt(rows) or inner_iterations
+ * When the Newton step is not finite or gives no decrease, the damped least-squares step (J' J + lambda I) d = -J' Phi
+ * replaces it, lambda growing. For alpha > 0 the function is smooth but for |u_T| in De Saxce's shift.
+ * Source: Cadoux (2009), 4.2.3 (approach by regularisation); Fukushima, Luo, Tseng (2002); Hayashi, Yamashita,
+ * Fukushima (2005).
+ */
+#include <Eigen/Core>
+
+#include "frictional_contact_sim/solver/fb_system.h"
+#include "frictional_contact_sim/solver/solver.h"
+
+namespace frictional_contact_sim
+{
+struct FbNewtonSmoothedOptions
+{
+  double first_smoothing = 0.1;  ///< alpha at the start over the largest free velocity (scaled variables) [-], > 0
+  double smoothing_decrease = 0.1;  ///< factor on alpha [-], in (0, 1)
+  double inner_share = 1.0;  ///< inner tolerance over alpha, per row [-], > 0
+  int inner_iterations = 15;  ///< steps an alpha, >= 1
+  int line_search_steps = 12;  ///< halvings of t, >= 0
+  double sufficient_decrease = 1e-4;  ///< Armijo constant [-], in (0, 0.5)
+
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
+class FbNewtonSmoothed : public Solver
+{
+public:
+  explicit FbNewtonSmoothed(const FbNewtonSmoothedOptions& options = {});
+  void setOptions(const FbNewtonSmoothedOptions& options);
+
+protected:
+  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+
+private:
+  bool lineSearch(double alpha, double merit, int halvings);
+  bool step(double alpha, double merit);
+
+  FbNewtonSmoothedOptions options_;
+  FbSystem system_;
+  FbSteps steps_;
+  Eigen::VectorXd z_, c_, step_, step_velocity_, trial_z_, trial_c_, r_, u_;
+};
+
+}  // namespace frictional_contact_sim

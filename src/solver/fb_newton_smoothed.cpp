@@ -1,0 +1,132 @@
+#include "frictional_contact_sim/solver/fb_newton_smoothed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// Smoothing relative to its start below which it is nothing but the plain function.
+constexpr double SMALLEST_SMOOTHING = 1e-14;
+/// Damping of the first least-squares step (J' J has entries of order one) and its growth.
+constexpr double FIRST_LAMBDA = 1e-8;
+constexpr double LAMBDA_GROWTH = 100.0;
+constexpr double LARGEST_LAMBDA = 1e8;
+}  // namespace
+
+void FbNewtonSmoothedOptions::validate() const
+{
+  requireOption(first_smoothing > 0.0, "fb_newton_smoothed.first_smoothing", first_smoothing, "> 0");
+  requireOption(smoothing_decrease > 0.0 && smoothing_decrease < 1.0, "fb_newton_smoothed.smoothing_decrease",
+                smoothing_decrease, "in (0, 1)");
+  requireOption(inner_share > 0.0, "fb_newton_smoothed.inner_share", inner_share, "> 0");
+  requireOption(inner_iterations >= 1, "fb_newton_smoothed.inner_iterations", inner_iterations, ">= 1");
+  requireOption(line_search_steps >= 0, "fb_newton_smoothed.line_search_steps", line_search_steps, ">= 0");
+  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "fb_newton_smoothed.sufficient_decrease",
+                sufficient_decrease, "in (0, 0.5)");
+}
+
+FbNewtonSmoothed::FbNewtonSmoothed(const FbNewtonSmoothedOptions& options)
+  : Solver("fb_newton_smoothed"), options_(options)
+{
+  options_.validate();
+}
+
+void FbNewtonSmoothed::setOptions(const FbNewtonSmoothedOptions& options)
+{
+  options.validate();
+  options_ = options;
+}
+
+bool FbNewtonSmoothed::lineSearch(double alpha, double merit, int halvings)
+{
+  system_.contacts().apply(step_, step_velocity_);
+  double t = 1.0;
+  for (int k = 0; k <= halvings; ++k, t *= 0.5)
+  {
+    trial_z_ = z_ + t * step_;
+    trial_c_ = c_ + t * step_velocity_;
+    if (system_.evaluate(trial_c_, trial_z_, alpha, false) <= (1.0 - 2.0 * options_.sufficient_decrease * t) * merit)
+    {
+      z_.swap(trial_z_);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool FbNewtonSmoothed::step(double alpha, double merit)
+{
+  steps_.assemble(system_);
+  if (steps_.newton(system_, step_) && lineSearch(alpha, merit, options_.line_search_steps))
+    return true;
+  for (double lambda = FIRST_LAMBDA; lambda <= LARGEST_LAMBDA; lambda *= LAMBDA_GROWTH)
+  {
+    double predicted = 0.0;
+    system_.evaluate(c_, z_, alpha, false);
+    if (steps_.leastSquares(system_, lambda, step_, predicted) && lineSearch(alpha, merit, 1))
+      return true;
+  }
+  return false;
+}
+
+void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  system_.set(problem, stepLengths());
+  ScaledContacts& contacts = system_.contacts();
+  contacts.scaleImpulse(result.solution.r, z_);
+  const double largest = options_.first_smoothing * contacts.freeVelocity().lpNorm<Eigen::Infinity>();
+  const double root_rows = std::sqrt(static_cast<double>(system_.rows()));
+  double alpha = largest, best = std::numeric_limits<double>::infinity();
+  int inner = 0;
+  bool stuck = false;
+  for (result.iterations = 0;; ++result.iterations)
+  {
+    contacts.velocity(z_, c_);
+    contacts.unscaleImpulse(z_, r_);
+    contacts.unscaleVelocity(c_, u_);
+    const double value = residual(problem, u_, r_);
+    if (value < best)
+    {
+      best = value;
+      result.solution.r = r_;
+    }
+    if (value <= stopping().tolerance)
+    {
+      result.status = SolverStatus::CONVERGED;
+      return;
+    }
+    if (result.iterations >= stopping().max_iterations || timeIsUp())
+    {
+      const bool time = timeIsUp();
+      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
+      result.message = time ? "time limit reached" : "Newton iterations exhausted";
+      return;
+    }
+    double merit = system_.evaluate(c_, z_, alpha, true);
+    while (stuck || inner >= options_.inner_iterations ||
+           std::sqrt(2.0 * merit) <= options_.inner_share * alpha * root_rows)
+    {
+      if (alpha == 0.0 || (alpha <= SMALLEST_SMOOTHING * largest && stuck) || !std::isfinite(merit))
+        break;
+      alpha = alpha <= SMALLEST_SMOOTHING * largest ? 0.0 : options_.smoothing_decrease * alpha;
+      inner = 0;
+      stuck = false;
+      merit = system_.evaluate(c_, z_, alpha, true);
+    }
+    if (stuck || !std::isfinite(merit))
+    {
+      result.status = stuck ? SolverStatus::STAGNATED : SolverStatus::NUMERICAL_FAILURE;
+      result.message = stuck ? "no step decreases the smoothed function" : "the function is not finite";
+      return;
+    }
+    stuck = !step(alpha, merit);
+    ++inner;
+  }
+}
+
+}  // namespace frictional_contact_sim
