@@ -118,10 +118,11 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
     }
     result.iterations = k;
     updateShift(problem);
-    lambda_hat_ = penalty_ * inverse_metric_.cwiseProduct(y_ - x_);
-    r_ = lambda_hat_ - convex_.c;
+    // In the form of a step from y: the factor holds the symmetric part of W only, u_ the product with W itself.
+    r_ = -(u_ + (convex_.c - problem.q) + penalty_ * inverse_metric_.cwiseProduct(x_));
     factor_.solve(r_, r_);
-    lambda_hat_ -= penalty_ * inverse_metric_.cwiseProduct(r_);
+    lambda_hat_ = -penalty_ * inverse_metric_.cwiseProduct(x_ + r_);
+    r_ += y_;
     x_ += r_;
     y_ = x_;
     projectOntoSets(convex_, y_);

@@ -34,6 +34,7 @@ ConvexResult ConvexAdmm::doSolve(const ConvexProblem& problem, const ConvexBudge
   ConvexResult result;
   result.error = optimalityError(problem, u, r);
   y_ = r;
+  velocity_ = u;
   x_ = (-1.0 / penalty) * metric_.cwiseProduct(u);
   bool factored = factor_.factor(penalty * metric_.cwiseInverse());
   for (int k = 1; k <= options_.max_iterations; ++k)
@@ -44,8 +45,10 @@ ConvexResult ConvexAdmm::doSolve(const ConvexProblem& problem, const ConvexBudge
       return result;
     }
     result.iterations = k;
-    r_ = penalty * (y_ - x_).cwiseQuotient(metric_) - problem.c;
+    // In the form of a step from y: the factor holds the symmetric part of W only, velocity_ the product with W itself.
+    r_ = -(velocity_ + penalty * x_.cwiseQuotient(metric_));
     factor_.solve(r_, r_);
+    r_ += y_;
     y_old_ = y_;
     x_ += options_.relaxation * r_ + (1.0 - options_.relaxation) * y_;
     y_ = x_;
