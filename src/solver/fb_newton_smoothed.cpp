@@ -25,6 +25,8 @@ void FbNewtonSmoothedOptions::validate() const
                 smoothing_decrease, "in (0, 1)");
   requireOption(inner_share > 0.0, "fb_newton_smoothed.inner_share", inner_share, "> 0");
   requireOption(inner_iterations >= 1, "fb_newton_smoothed.inner_iterations", inner_iterations, ">= 1");
+  requireOption(restarts >= 0, "fb_newton_smoothed.restarts", restarts, ">= 0");
+  requireOption(restart_factor > 1.0, "fb_newton_smoothed.restart_factor", restart_factor, "> 1");
   requireOption(line_search_steps >= 0, "fb_newton_smoothed.line_search_steps", line_search_steps, ">= 0");
   requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "fb_newton_smoothed.sufficient_decrease",
                 sufficient_decrease, "in (0, 0.5)");
@@ -74,16 +76,52 @@ bool FbNewtonSmoothed::step(double alpha, double merit)
   return false;
 }
 
+bool FbNewtonSmoothed::restart(double largest)
+{
+  if (restarts_ >= options_.restarts)
+    return false;
+  const double power = std::pow(options_.restart_factor, 1 + restarts_ / 2);
+  alpha_ = restarts_ % 2 == 0 ? largest * power : largest / power;
+  ++restarts_;
+  inner_ = 0;
+  stuck_ = false;
+  z_ = start_;
+  system_.velocity(z_, c_);
+  return true;
+}
+
+bool FbNewtonSmoothed::nextSmoothing(double largest, double root_rows, double& merit)
+{
+  const double smallest = SMALLEST_SMOOTHING * largest;
+  if (stuck_ && alpha_ <= smallest)
+  {
+    if (!restart(largest))
+      return false;
+    merit = system_.evaluate(c_, z_, alpha_, true);
+  }
+  while (alpha_ > 0.0 && (stuck_ || inner_ >= options_.inner_iterations ||
+                          std::sqrt(2.0 * merit) <= options_.inner_share * alpha_ * root_rows))
+  {
+    alpha_ = alpha_ <= smallest ? 0.0 : options_.smoothing_decrease * alpha_;
+    inner_ = 0;
+    stuck_ = false;
+    merit = system_.evaluate(c_, z_, alpha_, true);
+  }
+  return true;
+}
+
 void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   system_.set(problem, stepLengths());
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
+  start_ = z_;
   const double largest = options_.first_smoothing * contacts.freeVelocity().lpNorm<Eigen::Infinity>();
   const double root_rows = std::sqrt(static_cast<double>(system_.rows()));
-  double alpha = largest, best = std::numeric_limits<double>::infinity();
-  int inner = 0;
-  bool stuck = false;
+  double best = std::numeric_limits<double>::infinity();
+  alpha_ = largest;
+  inner_ = restarts_ = 0;
+  stuck_ = false;
   for (result.iterations = 0;; ++result.iterations)
   {
     contacts.velocity(z_, c_);
@@ -107,25 +145,15 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& res
       result.message = time ? "time limit reached" : "Newton iterations exhausted";
       return;
     }
-    double merit = system_.evaluate(c_, z_, alpha, true);
-    while (stuck || inner >= options_.inner_iterations ||
-           std::sqrt(2.0 * merit) <= options_.inner_share * alpha * root_rows)
+    double merit = system_.evaluate(c_, z_, alpha_, true);
+    if (!nextSmoothing(largest, root_rows, merit) || !std::isfinite(merit))
     {
-      if (alpha == 0.0 || (alpha <= SMALLEST_SMOOTHING * largest && stuck) || !std::isfinite(merit))
-        break;
-      alpha = alpha <= SMALLEST_SMOOTHING * largest ? 0.0 : options_.smoothing_decrease * alpha;
-      inner = 0;
-      stuck = false;
-      merit = system_.evaluate(c_, z_, alpha, true);
-    }
-    if (stuck || !std::isfinite(merit))
-    {
-      result.status = stuck ? SolverStatus::STAGNATED : SolverStatus::NUMERICAL_FAILURE;
-      result.message = stuck ? "no step decreases the smoothed function" : "the function is not finite";
+      result.status = std::isfinite(merit) ? SolverStatus::STAGNATED : SolverStatus::NUMERICAL_FAILURE;
+      result.message = std::isfinite(merit) ? "no step decreases the smoothed function" : "the function is not finite";
       return;
     }
-    stuck = !step(alpha, merit);
-    ++inner;
+    stuck_ = !step(alpha_, merit);
+    ++inner_;
   }
 }
 
