@@ -5,6 +5,7 @@
 #include "frictional_contact_sim/solver/ac_fixed_point.h"
 #include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/admm.h"
+#include "frictional_contact_sim/solver/bipotential.h"
 #include "frictional_contact_sim/solver/cadoux_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
@@ -51,6 +52,8 @@ const std::vector<SolverEntry>& solverRegistry()
        "Cadoux (2009), 4.5.2, (4.14)"},
       {"fb_bfgs", &create<FbBfgs>, "limited-memory quasi-Newton on the Fischer-Burmeister merit, Wolfe line search",
        "Cadoux (2009), 4.3.2, 4.5.3; Nocedal, Wright (2006)"},
+      {"bipotential", &create<Bipotential>, "minimises De Saxce's bipotential, splitting on the linearised product",
+       "De Saxce, Feng (1998); Cadoux (2009), 4.3.1, (4.12)"},
       {"gauss_seidel", &create<GaussSeidel>, "contact by contact, each solved exactly",
        "Jourdan, Alart, Jean (1998); Cadoux (2009), 4.8.2"},
       {"interior_point", &create<InteriorPoint>, "Nesterov-Todd scaling, slip speeds changed every iteration",
