@@ -284,8 +284,10 @@ double SemismoothNewton::lineSearch(const DelassusProblem& problem, const Eigen:
       best_t = t;
     }
   }
-  // No sufficient decrease: the best of the tried ones when it is a decrease at all.
-  return best_merit < reference ? best_t : 0.0;
+  // No sufficient decrease: the best of the tried ones when it is a decrease at all. Otherwise the full step: across a
+  // kink the merit is no guide, refusing the step stalls (measured: 1829 steps instead of 66 on 256 spheres in a box),
+  // and the budget of the inner solve bounds the excursion.
+  return best_merit < reference ? best_t : 1.0;
 }
 
 void SemismoothNewton::keepBest(double value, const Eigen::VectorXd& r)
@@ -324,10 +326,7 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
     history_[history_count_++ % options_.line_search_memory] = merit;
     if (!direction(problem))
       return Inner::FAILED;
-    const double t = lineSearch(problem, r);
-    if (t == 0.0)
-      return Inner::FAILED;
-    r += t * step_;
+    r += lineSearch(problem, r) * step_;
   }
   return Inner::FAILED;
 }

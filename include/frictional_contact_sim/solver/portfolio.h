@@ -25,8 +25,8 @@ class AcNewton;
 
 struct PortfolioOptions
 {
-  int newton_first_rows = 100;  ///< up to this many rows Newton goes first, >= 0
-  int newton_first_steps = 60;  ///< its budget in that place, >= 1
+  int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
+  int newton_first_steps = 30;  ///< its budget in that place, >= 1
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1

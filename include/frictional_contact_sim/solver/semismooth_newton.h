@@ -5,7 +5,8 @@
  *
  *   outer   centre c = r,  u_alpha(r) = W r + q + alpha D (r - c),   D = diag(1/rho_i)
  *   inner   (A (W + alpha D) + B) dr = -f(u_alpha, r),   A = df/du, B = df/dr block-diagonal
- *           r <- r + t dr, t by a nonmonotone backtracking (Grippo, Lampariello, Lucidi 1986) on 1/2 |Phi/rho|^2
+ *           r <- r + t dr, t by a nonmonotone backtracking (Grippo, Lampariello, Lucidi 1986) on 1/2 |Phi/rho|^2,
+ *           and the full step where no t decreases it (a watchdog: the inner budget ends a bad excursion)
  *   alpha <- alpha / 10 after an inner success, x 5 (at least proximal_restart) after a failure
  * alpha [-] is relative to the Delassus entries. With rigid bodies A W + B is singular as a rule (Cadoux (2009),
  * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
