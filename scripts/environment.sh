@@ -2,6 +2,8 @@
 # python3 of pyenv or conda nor another ROS workspace of the caller gets into the build.
 package_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_dir=$package_dir/build
+# Not below build/: rosrun looks past everything in a package's folder of that name.
+devel_dir=$package_dir/devel
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
 unset PYTHONHOME PYTHONPATH CMAKE_PREFIX_PATH
 
@@ -22,9 +24,10 @@ build_package()
   if [ ! -f "$build_dir/Makefile" ] || [ ! -f "$stamp" ] || [ ${#options[@]} -gt 0 ]; then
     # A build folder that came along from another path cannot be reused: CMake refuses it.
     if [ -f "$build_dir/CMakeCache.txt" ] && ! grep -qx "CMAKE_HOME_DIRECTORY:INTERNAL=$package_dir" "$build_dir/CMakeCache.txt"; then
-      rm -rf "$build_dir"
+      rm -rf "$build_dir" "$devel_dir"
     fi
-    cmake -S "$package_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release "${options[@]}" >&2 || return
+    cmake -S "$package_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release -DCATKIN_DEVEL_PREFIX="$devel_dir" \
+      -DWARNINGS_AS_ERRORS=ON "${options[@]}" >&2 || return
     touch "$stamp"
   fi
   cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2
@@ -37,7 +40,7 @@ use_devel_space()
   unset ROS_PACKAGE_PATH
   set +u
   # shellcheck disable=SC1091
-  source "$build_dir/devel/setup.bash" >&2
+  source "$devel_dir/setup.bash" >&2
   set -u
   export ROS_PACKAGE_PATH=$package_dir${caller_path:+:$caller_path}:/usr/share
   export ROS_MASTER_URI=${caller_master:-http://localhost:11311}
