@@ -13,6 +13,8 @@ namespace
 {
 /// Sweeps after which Gauss-Seidel must have halved the residual to go on.
 constexpr int STALL_WINDOW = 20;
+/// Above Newton's first proximal parameter, below its restart.
+constexpr double WATCHDOG_MIN = 1e-5;
 /// Newton on a small problem aims this far below the tolerance: its last step costs little, and a scene at rest then
 /// stays within the tolerance for many warm-started steps instead of drifting out of it at once.
 constexpr double NEWTON_MARGIN = 1e-2;
@@ -91,10 +93,17 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   best_value_ = criterion(problem, best_r_);
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
+  SemismoothNewtonOptions newton;
+  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
+  // round.
+  newton.watchdog_min = newton_first ? WATCHDOG_MIN : 0.0;
+  newton_->setOptions(newton);
   if (!done)
     done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, NEWTON_MARGIN)
                         : run(*gauss_seidel_, problem, options_.first_sweeps, result) ||
                               run(*newton_, problem, options_.newton_steps, result);
+  newton.watchdog_min = 0.0;
+  newton_->setOptions(newton);
   for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
     done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result) ||
            run(*newton_, problem, options_.newton_steps << round, result);
