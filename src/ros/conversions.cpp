@@ -1,7 +1,6 @@
 #include "frictional_contact_sim/ros/conversions.h"
 
 #include <cmath>
-#include <limits>
 
 namespace frictional_contact_sim
 {
@@ -177,7 +176,6 @@ void fillStepReport(const StepSummary& summary, double real_time_factor, const r
   message.bilateral_violation = summary.bilateral_violation;
   message.max_penetration = summary.max_penetration;
   message.existence = StepReport::NOT_CHECKED;
-  message.existence_margin = std::numeric_limits<double>::quiet_NaN();
   message.uniqueness = StepReport::NOT_CHECKED;
   message.kinetic = summary.energy.kinetic;
   message.potential = summary.energy.potential;
