@@ -20,19 +20,19 @@ struct Box
 /// Axis z, centred at the origin (URDF's convention).
 struct Cylinder
 {
-  double radius;       ///< [m] > 0
+  double radius;  ///< [m] > 0
   double half_length;  ///< [m] > 0
 };
 /// Cylinder of the half length with a half sphere at each end, axis z.
 struct Capsule
 {
-  double radius;       ///< [m] > 0
+  double radius;  ///< [m] > 0
   double half_length;  ///< of the cylindrical part [m] >= 0
 };
 /// Convex hull of the vertices of a mesh file.
 struct Mesh
 {
-  std::string path;       ///< absolute path of the file, resolved by the loader
+  std::string path;  ///< absolute path of the file, resolved by the loader
   Eigen::Vector3d scale;  ///< factor per axis [-]
 };
 /// The half space z <= 0 of its frame: the ground.

@@ -18,7 +18,8 @@
 
 namespace frictional_contact_sim
 {
-/** @brief A file or its content is not what it must be: what() is one line with the file, what was found and expected. */
+/** @brief A file or its content is not what it must be: what() is one line with the file, what was found and expected.
+ */
 class ModelError : public std::runtime_error
 {
 public:
