@@ -1,5 +1,8 @@
 #include "frictional_contact_sim/solver/cadoux_fixed_point.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "options_check.h"
@@ -10,12 +13,15 @@ namespace
 {
 /// Times s is raised out of unqualified points before the run ends.
 constexpr int MAX_RAISES = 5;
+/// Halvings of the step when the iterations cycle.
+constexpr int MAX_HALVINGS = 3;
 }  // namespace
 
 void CadouxOptions::validate() const
 {
   requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux.inner_accuracy", inner_accuracy, "in (0, 1)");
   requireOption(relaxation > 0.0 && relaxation <= 1.0, "cadoux.relaxation", relaxation, "in (0, 1]");
+  requireOption(cycle_window >= 1, "cadoux.cycle_window", cycle_window, ">= 1");
   requireOption(stall_window >= 2, "cadoux.stall_window", stall_window, ">= 2");
 }
 
@@ -46,7 +52,7 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
     // Without friction there is one convex problem: solve it to the end.
     const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
     budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
-    const ConvexResult inner = map_.evaluate(s_, budget);
+    map_.evaluate(s_, budget);
     ++result.iterations;
     if (inner.status != ConvexStatus::CONVERGED &&
         isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
@@ -67,7 +73,9 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
       loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
       return;
     }
-    s_ += options_.relaxation * (map_.value() - s_);
+    // A cycle of F is broken by averaging: half the step after each cycle_window iterations without progress.
+    const int halvings = std::min(loop.sinceProgress() / options_.cycle_window, MAX_HALVINGS);
+    s_ += std::ldexp(options_.relaxation, -halvings) * (map_.value() - s_);
   }
   loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
 }

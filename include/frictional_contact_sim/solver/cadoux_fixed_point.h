@@ -12,7 +12,8 @@
  * Departures: the inner tolerance follows the outer error (inexact inner solves; with a fixed low count of iterations,
  * as in the thesis, only inexact ones). The start is s = |u_T| of the guess, which for r = 0 is |q_T|; the thesis's
  * s = 0 (initial_slip ZERO) may be an unqualified fixed point (example 3.21). When the inner run shows that C(s) is
- * unqualified, s is raised (perturbation argument of 3.3.2) instead of being accepted.
+ * unqualified, s is raised (perturbation argument of 3.3.2) instead of being accepted. A cycle of F is broken by
+ * smaller steps.
  */
 #include "frictional_contact_sim/solver/convex/slip_map.h"
 #include "frictional_contact_sim/solver/solver.h"
@@ -30,6 +31,7 @@ struct CadouxOptions
   double inner_accuracy = 0.1;  ///< inner tolerance relative to the outer error [-], in (0, 1)
   double relaxation = 1.0;  ///< s <- s + relaxation (F(s) - s) [-], in (0, 1]
   InitialSlip initial_slip = InitialSlip::GUESS;
+  int cycle_window = 20;  ///< outer iterations without progress that halve the step (up to three times), >= 1
   int stall_window = 100;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
 
   /** @throws std::invalid_argument naming the field and its value. */

@@ -33,6 +33,8 @@ public:
    */
   double innerTolerance(double accuracy) const;
   double best() const { return best_; }
+  /** @brief Iterations since the residual last fell by a tenth. */
+  int sinceProgress() const { return since_; }
 
 private:
   double tolerance_;

@@ -20,8 +20,8 @@
 
 namespace frictional_contact_sim
 {
-/** @brief True when r is, numerically, a direction along which the convex problem does not grow: the answer of a run
- *  that did not converge because nothing is to be converged to. u = W r + c. */
+/** @brief True when r is, numerically, a direction along which the convex problem does not grow (huge, W r and c.r
+ * nearly zero beside it): the answer of a run that has nothing to converge to. u = W r + c. */
 bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r);
 
 /** @brief max(|q|_inf, |u|_inf, max_i |r_i|/rho_i, 1e-12) [m/s]: the scale of the package's residual. */

@@ -1,0 +1,113 @@
+#include "frictional_contact_sim/solver/cadoux_broyden.h"
+
+#include <cmath>
+#include <limits>
+
+#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "options_check.h"
+
+namespace frictional_contact_sim
+{
+void CadouxBroydenOptions::validate() const
+{
+  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux_broyden.inner_accuracy", inner_accuracy,
+                "in (0, 1)");
+  requireOption(memory >= 1, "cadoux_broyden.memory", memory, ">= 1");
+  requireOption(divergence > 1.0, "cadoux_broyden.divergence", divergence, "> 1");
+  requireOption(stall_window >= 2, "cadoux_broyden.stall_window", stall_window, ">= 2");
+}
+
+CadouxBroyden::CadouxBroyden(const CadouxBroydenOptions& options, std::unique_ptr<ConvexSolver> inner)
+  : Solver("cadoux_broyden")
+  , options_(options)
+  , map_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+{
+  options_.validate();
+}
+
+Eigen::VectorXd CadouxBroyden::apply(const Eigen::VectorXd& x) const
+{
+  Eigen::VectorXd y = -x;
+  for (std::size_t k = 0; k < left_.size(); ++k)
+    y += right_[k].dot(x) * left_[k];
+  return y;
+}
+
+Eigen::VectorXd CadouxBroyden::applyTransposed(const Eigen::VectorXd& x) const
+{
+  Eigen::VectorXd y = -x;
+  for (std::size_t k = 0; k < left_.size(); ++k)
+    y += left_[k].dot(x) * right_[k];
+  return y;
+}
+
+void CadouxBroyden::update(const Eigen::VectorXd& ds, const Eigen::VectorXd& dG)
+{
+  const Eigen::VectorXd product = apply(dG);
+  const double curvature = ds.dot(product);
+  // ds^T B dG is near |ds|^2 when B is good; far below, the update would blow B up.
+  if (std::abs(curvature) < 1e-3 * ds.squaredNorm())
+    return;
+  if (static_cast<int>(left_.size()) >= options_.memory)
+  {
+    left_.clear();
+    right_.clear();
+    return;
+  }
+  Eigen::VectorXd right = applyTransposed(ds);
+  left_.push_back((ds - product) / curvature);
+  right_.push_back(std::move(right));
+}
+
+void CadouxBroyden::doSolve(const DelassusProblem& problem, SolverResult& result)
+{
+  left_.clear();
+  right_.clear();
+  map_.setProblem(problem, stepLengths());
+  map_.setGuess(result.solution.r);
+  Eigen::VectorXd s = map_.value();
+  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+    return;
+  ConvexBudget budget;
+  budget.interrupted = [this] { return timeIsUp(); };
+  Eigen::VectorXd old_s, old_G, best_F;
+  double best = std::numeric_limits<double>::infinity();
+  while (result.iterations < stopping().max_iterations)
+  {
+    const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
+    budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
+    map_.evaluate(s, budget);
+    ++result.iterations;
+    if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+      return;
+    if (timeIsUp())
+    {
+      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+      return;
+    }
+    const Eigen::VectorXd G = map_.value() - s;
+    if (G.norm() < best)
+    {
+      best = G.norm();
+      best_F = map_.value();
+    }
+    if (!(G.norm() <= options_.divergence * best))
+    {
+      left_.clear();
+      right_.clear();
+      old_s.resize(0);
+      s = best_F;
+      continue;
+    }
+    if (old_s.size() > 0)
+      update(s - old_s, G - old_G);
+    old_s = s;
+    old_G = G;
+    s = (s - apply(G)).cwiseMax(0.0);
+  }
+  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
+}
+
+}  // namespace frictional_contact_sim
