@@ -54,8 +54,7 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
     budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
     map_.evaluate(s_, budget);
     ++result.iterations;
-    if (inner.status != ConvexStatus::CONVERGED &&
-        isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
+    if (isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
     {
       if (map_.size() == 0 || ++raises > MAX_RAISES)
       {
