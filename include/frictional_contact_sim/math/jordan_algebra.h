@@ -107,6 +107,8 @@ template <int D>
 inline SquareMatrix<D> quotient(const Vector<D>& x, const Vector<D - 1>& axis, double sigma_1, double sigma_2)
 {
   constexpr int T = D - 1;
+  // Below this ratio sigma_1 is the round-off of a zero, and the quotients by it would be noise.
+  constexpr double KINK = 1e-15;
   constexpr double HALF_ROOT = 0.70710678118654752440;
   const double along = axis.dot(x.template tail<T>());
   const Vector<T> across = x.template tail<T>() - along * axis;
@@ -117,7 +119,7 @@ inline SquareMatrix<D> quotient(const Vector<D>& x, const Vector<D - 1>& axis, d
     const double eigenvalue = x[0] + sign * along;
     Vector<D> direction, row;  // 2 c, and c' L(x) / sigma
     direction << 1.0, sign * axis;
-    if (sigma > 0.0)
+    if (sigma > KINK * sigma_2)
       row << 0.5 * eigenvalue / sigma, (0.5 * sign * eigenvalue / sigma) * axis + (0.5 / sigma) * across;
     else
       row << 0.5 * HALF_ROOT, (0.5 * sign * HALF_ROOT) * axis;
@@ -154,8 +156,9 @@ inline FischerBurmeister<D> fischerBurmeister(const Vector<D>& x, const Vector<D
   const Vector<T> axis = norm > 0.0 ? Vector<T>(tangential / norm) : Vector<T>(Vector<T>::Unit(0));
   const double x_along = axis.dot(x.template tail<T>());
   const double y_along = axis.dot(y.template tail<T>());
-  const double across = (x.template tail<T>() - x_along * axis).squaredNorm() +
-                        (y.template tail<T>() - y_along * axis).squaredNorm() + smoothing * smoothing;
+  const Vector<T> x_across = x.template tail<T>() - x_along * axis;
+  const Vector<T> y_across = y.template tail<T>() - y_along * axis;
+  const double across = x_across.squaredNorm() + y_across.squaredNorm() + smoothing * smoothing;
   const double x_small = x[0] - x_along, y_small = y[0] - y_along;
   const double x_large = x[0] + x_along, y_large = y[0] + y_along;
   const double sigma_1 = std::sqrt(x_small * x_small + y_small * y_small + across);
@@ -164,8 +167,7 @@ inline FischerBurmeister<D> fischerBurmeister(const Vector<D>& x, const Vector<D
   const double small = fischer_burmeister_detail::difference(x_small, y_small, across, sigma_1);
   const double large = fischer_burmeister_detail::difference(x_large, y_large, across, sigma_2);
   result.value[0] = 0.5 * (small + large);
-  result.value.template tail<T>() =
-      x.template tail<T>() + y.template tail<T>() + (0.5 * (large - small) - x_along - y_along) * axis;
+  result.value.template tail<T>() = x_across + y_across + (0.5 * (large - small)) * axis;
   if (!jacobians)
     return result;
   result.by_x = SquareMatrix<D>::Identity() - fischer_burmeister_detail::quotient<D>(x, axis, sigma_1, sigma_2);
