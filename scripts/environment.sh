@@ -20,7 +20,11 @@ build_package()
   while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
   shift || true
   targets=("$@")
-  local stamp=$build_dir/.configured
+  local stamp=$build_dir/.configured lock
+  # One build at a time, however many scripts are started together.
+  mkdir -p "$package_dir/.cache"
+  exec {lock}>"$package_dir/.cache/build.lock"
+  flock "$lock"
   if [ ! -f "$build_dir/Makefile" ] || [ ! -f "$stamp" ] || [ ${#options[@]} -gt 0 ]; then
     # A build folder that came along from another path cannot be reused: CMake refuses it.
     if [ -f "$build_dir/CMakeCache.txt" ] && ! grep -qx "CMAKE_HOME_DIRECTORY:INTERNAL=$package_dir" "$build_dir/CMakeCache.txt"; then
@@ -30,7 +34,10 @@ build_package()
       -DWARNINGS_AS_ERRORS=ON "${options[@]}" >&2 || return
     touch "$stamp"
   fi
-  cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2
+  local code=0
+  cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2 || code=$?
+  exec {lock}>&-
+  return $code
 }
 
 # The package's own ROS environment; the caller's ROS_PACKAGE_PATH and ROS_MASTER_URI are kept.
