@@ -74,10 +74,16 @@ TEST(DsNewtonTest, ExampleD2StartsWhereAlartCurnierHasASingularJacobian)
   const Eigen::MatrixXd H = problem.H;
   const Eigen::Vector4d r(6, 1, 8, 9);
   const Eigen::Vector4d u = H * (H.transpose() * r - problem.f);
+  Eigen::Matrix4d by_u = Eigen::Matrix4d::Zero();
   for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(alartCurnierJacobian<2>(u.segment<2>(2 * i), r.segment<2>(2 * i), 1.0, 0.1, 0.1, RadiusRule::AUGMENTED)
-                  .by_r(0, 0),
-              0.0);
+  {
+    const ContactFunction<2> f =
+        alartCurnierJacobian<2>(u.segment<2>(2 * i), r.segment<2>(2 * i), 1.0, 0.1, 0.1, RadiusRule::IMPULSE);
+    EXPECT_EQ(f.by_r, Eigen::Matrix2d::Zero()) << "contact " << i;
+    by_u.block<2, 2>(2 * i, 2 * i) = f.by_u;
+  }
+  const Eigen::Matrix4d jacobian = by_u * H * H.transpose();
+  EXPECT_EQ(jacobian.fullPivLu().rank(), 3);
   expectConvergenceFromExampleD2("ds_newton", 200);
 }
 
