@@ -25,7 +25,7 @@ struct FbNewtonSmoothedOptions
 {
   double first_smoothing = 0.1;  ///< alpha at the start over the largest free velocity (scaled variables) [-], > 0
   double smoothing_decrease = 0.5;  ///< factor on alpha [-], in (0, 1)
-  double inner_share = 1.0;  ///< inner tolerance over alpha, per row [-], > 0
+  double inner_share = 0.1;  ///< inner tolerance over alpha, per row [-], > 0
   int inner_iterations = 15;  ///< steps an alpha, >= 1
   int restarts = 4;  ///< new starts when no step decreases the merit, >= 0
   double restart_factor = 5.0;  ///< on the first alpha of a new start [-], > 1
