@@ -11,8 +11,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Times s is raised out of unqualified points before the run ends.
-constexpr int MAX_RAISES = 5;
 /// Halvings of the step when the iterations cycle.
 constexpr int MAX_HALVINGS = 3;
 }  // namespace
@@ -46,21 +44,18 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
     return;
   ConvexBudget budget;
   budget.interrupted = [this] { return timeIsUp(); };
-  int raises = 0;
+  bool raised = false;
   while (result.iterations < stopping().max_iterations)
   {
     // Without friction there is one convex problem: solve it to the end.
     const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
     budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
-    map_.evaluate(s_, budget);
+    const ConvexResult inner = map_.evaluate(s_, budget);
     ++result.iterations;
-    if (isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
+    if (!raised && map_.size() > 0 && inner.status != ConvexStatus::CONVERGED &&
+        isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
     {
-      if (map_.size() == 0 || ++raises > MAX_RAISES)
-      {
-        loop.stop(SolverStatus::STAGNATED, "the convex problem at s is unqualified: no impulse belongs to it");
-        return;
-      }
+      raised = true;
       s_.array() += problem.q.lpNorm<Eigen::Infinity>();
       map_.setGuess(Eigen::VectorXd::Zero(problem.W.rows()));
       continue;

@@ -46,8 +46,12 @@ bool ProjectedGradient::armijoStep(const ConvexProblem& problem, double& step, c
     projectOntoSets(problem, trial_);
     change_ = trial_ - r;
     problem.W->apply(change_, change_velocity_);
-    const double slope = u.dot(change_);
-    if (0.5 * change_.dot(change_velocity_) <= (options_.sufficient_decrease - 1.0) * slope)
+    // By the projection u.d <= -d.D^-1 d / t, so the second test implies Armijo's. It is what decides near the
+    // solution, where u.d is a difference of terms that are larger than itself by 1/epsilon.
+    const double curvature = 0.5 * change_.dot(change_velocity_);
+    const double length = change_.cwiseQuotient(metric_).dot(change_) / step;
+    const double share = 1.0 - options_.sufficient_decrease;
+    if (curvature <= -share * u.dot(change_) || curvature <= share * length)
       return true;
   }
   return false;

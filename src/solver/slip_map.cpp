@@ -7,9 +7,9 @@ namespace frictional_contact_sim
 namespace
 {
 /// r is taken for a direction of recession when |r_i|/rho_i exceeds the velocities by this factor ...
-constexpr double RECESSION_SIZE = 1e6;
+constexpr double RECESSION_SIZE = 1e3;
 /// ... and W r and c.r are this small beside it.
-constexpr double RECESSION_SLOPE = 1e-4;
+constexpr double RECESSION_SLOPE = 1e-3;
 }  // namespace
 
 bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r)

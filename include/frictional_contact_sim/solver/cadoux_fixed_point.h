@@ -12,7 +12,7 @@
  * Departures: the inner tolerance follows the outer error (inexact inner solves; with a fixed low count of iterations,
  * as in the thesis, only inexact ones). The start is s = |u_T| of the guess, which for r = 0 is |q_T|; the thesis's
  * s = 0 (initial_slip ZERO) may be an unqualified fixed point (example 3.21). When the inner run shows that C(s) is
- * unqualified, s is raised (perturbation argument of 3.3.2) instead of being accepted. A cycle of F is broken by
+ * unqualified, s is raised once (perturbation argument of 3.3.2) instead of being accepted. A cycle of F is broken by
  * smaller steps.
  */
 #include "frictional_contact_sim/solver/convex/slip_map.h"

@@ -8,7 +8,8 @@
  *   of one pair      N = beta [w_0, w_T^T; w_T, I + w_T w_T^T/(1 + w_0)],  w = (x' + J z')/(2 gamma),
  *                    x' = x/|x|_J, z' = z/|z|_J, gamma^2 = (1 + x'.z')/2, beta^2 = |x|_J/|z|_J, |x|_J^2 = x^T J x
  * After a step the new pair is scaled in the coordinates of lambda, where nothing cancels, and the factors are
- * multiplied: N <- N N'. That is what keeps digits when x and z have reached the boundary.
+ * multiplied: N <- N N'. That is what keeps digits when x and z approach the boundary; as 3 x 3 numbers N and N^-1 end
+ * near |w| = 1e8, that is for slip speeds and impulses together 16 digits above the complementarity m.
  *
  * d = 1 is the half-line. Source: Nesterov, Todd (1997); Vandenberghe (2010), "The CVXOPT linear and quadratic cone
  * program solvers", sections 4 and 6.

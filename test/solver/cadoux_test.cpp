@@ -1,0 +1,227 @@
+/**
+ * @file cadoux_test.cpp
+ * @brief The outer loops around convex problems (cadoux_*, haslinger, interior_point) and admm.
+ */
+#include <gtest/gtest.h>
+
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/residual.h"
+#include "frictional_contact_sim/solver/admm.h"
+#include "frictional_contact_sim/solver/cadoux_broyden.h"
+#include "frictional_contact_sim/solver/cadoux_fixed_point.h"
+#include "frictional_contact_sim/solver/cadoux_newton.h"
+#include "frictional_contact_sim/solver/convex/convex_interior_point.h"
+#include "frictional_contact_sim/solver/convex/projected_gradient.h"
+#include "frictional_contact_sim/solver/haslinger.h"
+#include "frictional_contact_sim/solver/interior_point.h"
+#include "method_test_support.h"
+#include "support/hand_problems.h"
+
+using namespace frictional_contact_sim;
+using namespace frictional_contact_sim::test_support;
+
+namespace
+{
+const std::vector<std::string> METHODS = {"cadoux_fixed_point", "cadoux_newton",  "cadoux_broyden",
+                                          "haslinger",          "interior_point", "admm"};
+
+/**
+ * One contact, W = I, q = (-1, -2, 0), mu = 1/2: slides with r = (1, 1/2, 0), u = (0, -3/2, 0).
+ * By hand: r(s) = P_K(1 - s/2, 2, 0) = ((2 - s/2)/1.25) (1, 1/2, 0), so F(s) = 2 - (2 - s/2)/2.5 = 1.2 + 0.2 s.
+ */
+DelassusProblem slidingContact()
+{
+  return localProblem(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-1, -2, 0), {{LawType::COULOMB_3D, 0.5}});
+}
+
+/// Exact here: with W = I one projected gradient step solves the convex problem.
+std::unique_ptr<ConvexSolver> exactInner()
+{
+  return std::make_unique<ProjectedGradient>();
+}
+
+/// Cadoux (2009), example 3.21, normal first: m = 2, M = I, H = [1 0; 1 0; 0 1], f = (0, 1), w = 0, mu = 1.
+IncrementalProblem example321()
+{
+  IncrementalProblem problem;
+  problem.M = sparse(Eigen::MatrixXd::Identity(2, 2));
+  problem.f = Eigen::Vector2d(0, 1);
+  Eigen::MatrixXd H(3, 2);
+  H << 1, 0, 1, 0, 0, 1;
+  problem.H = sparse(H);
+  problem.w.setZero(3);
+  problem.laws = {{LawType::COULOMB_3D, 1.0}};
+  problem.G.resize(0, 2);
+  problem.b.resize(0);
+  return problem;
+}
+
+template <typename Method>
+Eigen::VectorXd impulseAfter(Method& solver, int iterations)
+{
+  solver.setStopping(stopAfter(iterations, 1e-15));
+  return solver.solve(slidingContact()).solution.r;
+}
+}  // namespace
+
+TEST(CadouxFixedPointTest, FirstIteratesAreThoseOfTheFormula)
+{
+  // s_0 = |q_T| = 2: r_1 = (0.8, 0.4, 0), s_1 = F(2) = 1.6: r_2 = (0.96, 0.48, 0).
+  CadouxFixedPoint solver({}, exactInner());
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(0.8, 0.4, 0)).norm(), 1e-15);
+  EXPECT_LT((impulseAfter(solver, 2) - Eigen::Vector3d(0.96, 0.48, 0)).norm(), 1e-15);
+}
+
+TEST(CadouxFixedPointTest, ZeroInitialSlipIsTheThesisStart)
+{
+  // r(0) = P_K(1, 2, 0) = (1.6, 0.8, 0), worse than r = 0 in no way: E is smaller, it is kept.
+  CadouxOptions options;
+  options.initial_slip = InitialSlip::ZERO;
+  CadouxFixedPoint solver(options, exactInner());
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(1.6, 0.8, 0)).norm(), 1e-14);
+}
+
+TEST(CadouxNewtonTest, OneStepFromTheAffineMapIsExact)
+{
+  // F is affine near s = 2: Newton's ds = (F - s)/(1 - F') = -0.4/0.8.
+  const DelassusProblem problem = slidingContact();
+  Eigen::VectorXd steps;
+  computeStepLengths(problem, steps);
+  SlipMap map(exactInner());
+  map.setProblem(problem, steps);
+  map.setGuess(Eigen::VectorXd::Zero(3));
+  const Eigen::VectorXd s = map.value();
+  ConvexBudget budget;
+  budget.tolerance = 1e-14;
+  map.evaluate(s, budget);
+  const Eigen::VectorXd step = cadouxNewtonStep(problem, map, s, 1e-10);
+  ASSERT_EQ(step.size(), 1);
+  EXPECT_NEAR(step[0], -0.5, 1e-14);
+}
+
+TEST(CadouxBroydenTest, SecondUpdateIsTheSecant)
+{
+  // s = 2, 1.6, then the secant of an affine function: 1.5 exactly, so the third evaluation is the solution.
+  CadouxBroyden solver({}, exactInner());
+  solver.setStopping(stopAfter(3, 1e-14));
+  const SolverResult result = solver.solve(slidingContact());
+  EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.residual;
+  EXPECT_EQ(result.iterations, 3);
+}
+
+TEST(HaslingerTest, FirstIteratesAreThoseOfTheFormula)
+{
+  // s_0 = 0: r_1 = (1, 0, 0), s_1 = 1/2: r_2 = (1, 1/2, 0), the solution.
+  Haslinger solver({}, exactInner());
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((impulseAfter(solver, 2) - Eigen::Vector3d(1, 0.5, 0)).norm(), 1e-15);
+}
+
+TEST(AdmmTest, FirstIterateByHand)
+{
+  // y = x = 0, s = 0, rho = 1: r = -q/2 = (1/2, 1, 0), y = P_K(r) = (0.8, 0.4, 0).
+  Admm solver;
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(0.8, 0.4, 0)).norm(), 1e-15);
+}
+
+TEST(OuterLoopsTest, FrictionlessProblemsAreOneConvexProblem)
+{
+  // The inner solver must do it in one outer iteration: nothing enters the loop (remarks 4.15, 4.18).
+  const IncrementalProblem box = restingBox(10, {0.5, 0.3, 0.1}, 0.0, {1, 0, 0}, {0, 0, -9.81}, 1e-3);
+  for (int k = 0; k < 4; ++k)
+  {
+    std::unique_ptr<Solver> solver;
+    if (k == 0)
+      solver = std::make_unique<CadouxFixedPoint>(CadouxOptions{}, std::make_unique<ConvexInteriorPoint>());
+    else if (k == 1)
+      solver = std::make_unique<Haslinger>(HaslingerOptions{}, std::make_unique<ConvexInteriorPoint>());
+    else if (k == 2)
+      solver = std::make_unique<CadouxBroyden>(CadouxBroydenOptions{}, std::make_unique<ConvexInteriorPoint>());
+    else
+      solver = std::make_unique<CadouxNewton>(CadouxNewtonOptions{}, std::make_unique<ConvexInteriorPoint>());
+    const SolverResult result = solver->solve(box);
+    EXPECT_EQ(result.status, SolverStatus::CONVERGED) << solver->name();
+    EXPECT_EQ(result.iterations, 1) << solver->name();
+  }
+}
+
+TEST(OuterLoopsTest, Example321HasItsTrueSolution)
+{
+  for (const std::string& name : METHODS)
+  {
+    const std::unique_ptr<Solver> solver = createSolver(name);
+    solver->setStopping(stopAfter(500));
+    const SolverResult result = solver->solve(example321());
+    ASSERT_EQ(result.status, SolverStatus::CONVERGED) << name << ": " << result.message;
+    // The residual's tolerance; M = I.
+    EXPECT_LT((result.solution.v - Eigen::Vector2d(0, -1)).norm(), 1e-7) << name;
+    EXPECT_LT(result.solution.r.norm(), 1e-7) << name;
+  }
+}
+
+TEST(OuterLoopsTest, Example321FromZeroSlipIsUnqualifiedAndLeft)
+{
+  // At s = 0 the convex problem has no minimum: r runs to infinity along (1, -1, 0), which isUnqualified() sees.
+  DelassusReduction reduction;
+  reduction.compute(example321());
+  const DelassusProblem& local = reduction.problem();
+  Eigen::VectorXd steps;
+  computeStepLengths(local, steps);
+  SlipMap map(std::make_unique<ConvexInteriorPoint>());
+  map.setProblem(local, steps);
+  map.setGuess(Eigen::VectorXd::Zero(3));
+  ConvexBudget budget;
+  budget.tolerance = 1e-12;
+  EXPECT_NE(map.evaluate(Eigen::VectorXd::Zero(1), budget).status, ConvexStatus::CONVERGED);
+  EXPECT_TRUE(isUnqualified(map.convexProblem(), map.shiftedVelocity(), map.r())) << map.r().transpose();
+  map.setGuess(Eigen::VectorXd::Zero(3));
+  map.evaluate(Eigen::VectorXd::Ones(1), budget);
+  EXPECT_FALSE(isUnqualified(map.convexProblem(), map.shiftedVelocity(), map.r()));
+
+  CadouxOptions options;
+  options.initial_slip = InitialSlip::ZERO;
+  CadouxFixedPoint solver(options, std::make_unique<ConvexInteriorPoint>());
+  const SolverResult result = solver.solve(example321());
+  EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.message;
+  EXPECT_LT((result.solution.v - Eigen::Vector2d(0, -1)).norm(), 1e-6) << "the false fixed point is v = 0";
+}
+
+TEST(OuterLoopsTest, AgreeWithGaussSeidelOnAllLaws)
+{
+  for (const std::string& name : METHODS)
+    expectAgreementWithGaussSeidel(name, 5000);
+}
+
+TEST(OuterLoopsTest, HonestWhereThereIsNoSolution)
+{
+  for (const std::string& name : METHODS)
+    expectHonestWithoutSolution(name);
+}
+
+TEST(OuterLoopsTest, ConvergeFromTheStartOfExampleD2)
+{
+  for (const std::string& name : METHODS)
+    expectConvergenceFromExampleD2(name, 2000);
+}
+
+TEST(InteriorPointTest, ReachesTenDigitsOnRedundantContacts)
+{
+  const IncrementalProblem box = restingBox(10, {0.5, 0.3, 0.1}, 0.5, {1, -2, 0}, {0, 0, -9.81}, 1e-3);
+  InteriorPoint solver;
+  solver.setStopping(stopAfter(200, 1e-10));
+  const SolverResult result = solver.solve(box);
+  EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.message << " E = " << result.residual;
+}
+
+TEST(OuterLoopsTest, OptionsAreChecked)
+{
+  CadouxOptions cadoux;
+  cadoux.relaxation = 0.0;
+  EXPECT_THROW(CadouxFixedPoint{cadoux}, std::invalid_argument);
+  InteriorPointOptions interior;
+  interior.slip_centring = -1.0;
+  EXPECT_THROW(InteriorPoint{interior}, std::invalid_argument);
+  AdmmOptions admm;
+  admm.penalty = 0.0;
+  EXPECT_THROW(Admm{admm}, std::invalid_argument);
+}
