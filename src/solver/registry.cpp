@@ -6,7 +6,9 @@
 #include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/admm.h"
 #include "frictional_contact_sim/solver/bipotential.h"
+#include "frictional_contact_sim/solver/cadoux_broyden.h"
 #include "frictional_contact_sim/solver/cadoux_fixed_point.h"
+#include "frictional_contact_sim/solver/cadoux_newton.h"
 #include "frictional_contact_sim/solver/ds_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
 #include "frictional_contact_sim/solver/fb_bfgs.h"
@@ -16,6 +18,7 @@
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/interior_point.h"
+#include "frictional_contact_sim/solver/lcp_lemke.h"
 #include "frictional_contact_sim/solver/portfolio.h"
 
 namespace frictional_contact_sim
@@ -64,6 +67,12 @@ const std::vector<SolverEntry>& solverRegistry()
        "Haslinger (1983); Cadoux (2009), 4.6, (4.17)"},
       {"cadoux_fixed_point", &create<CadouxFixedPoint>, "fixed point on the slip speeds, convex problem over the cones",
        "Cadoux (2009), 4.7, (3.13), (3.24)"},
+      {"cadoux_newton", &create<CadouxNewton>, "Newton on F(s) = s by the linearised KKT system, least squares",
+       "Cadoux (2009), 4.7.5, (4.28)"},
+      {"cadoux_broyden", &create<CadouxBroyden>, "Broyden's quasi-Newton method on F(s) = s",
+       "Broyden (1965); Cadoux (2009), 4.7, table 5.5"},
+      {"lcp_lemke", &create<LcpLemke>, "Lemke's pivoting, exact in 2D, polyhedral cone with turned facets in 3D",
+       "Lemke (1965); Stewart, Trinkle (1996); Cadoux (2009), 4.1"},
   };
   return registry;
 }
