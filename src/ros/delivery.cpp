@@ -3,8 +3,12 @@
 #include <ros/init.h>
 #include <ros/master.h>
 #include <ros/network.h>
+#include <ros/poll_manager.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>
+
+#include <chrono>
+#include <thread>
 
 namespace frictional_contact_sim
 {
@@ -54,9 +58,27 @@ int sumColumn(XmlRpcValue& connections, int column)
 
 DeliveryMonitor::DeliveryMonitor(std::set<std::string> topics) : topics_(std::move(topics))
 {
+  poll_listener_ = ros::PollManager::instance()->addPollThreadListener([this] { ++poll_cycles_; });
 }
 
-DeliveryMonitor::~DeliveryMonitor() = default;
+DeliveryMonitor::~DeliveryMonitor()
+{
+  ros::PollManager::instance()->removePollThreadListener(poll_listener_);
+}
+
+/**
+ * publish() only puts a message into a queue; roscpp's poll thread hands it to the connections, where it is counted as
+ * sent, and then runs the listeners. The second cycle that ends from now on has begun after the last publish().
+ */
+void DeliveryMonitor::flushPublishQueues()
+{
+  const std::uint64_t target = poll_cycles_ + 2;
+  while (ros::ok() && poll_cycles_ < target)
+  {
+    ros::PollManager::instance()->getPollSet().signal();
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+  }
+}
 
 const std::map<std::string, int>& DeliveryMonitor::dropped() const
 {
@@ -174,6 +196,7 @@ bool DeliveryMonitor::receivedCounts(const std::string& node, Counts& received)
 
 std::string DeliveryMonitor::laggard()
 {
+  flushPublishQueues();
   std::map<std::string, Counts> all_sent;
   if (!sentCounts(all_sent))
   {

@@ -8,6 +8,9 @@
  * messages sent or received on each connection and of those dropped, this node as well. The monitor compares them.
  * Asking every WINDOW steps (well below 100) bounds what can be in flight, on both sides.
  */
+#include <boost/signals2/connection.hpp>
+
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -29,6 +32,8 @@ public:
   /** @param topics resolved names of topics none of whose messages may be lost */
   explicit DeliveryMonitor(std::set<std::string> topics);
   ~DeliveryMonitor();
+  DeliveryMonitor(const DeliveryMonitor&) = delete;
+  DeliveryMonitor& operator=(const DeliveryMonitor&) = delete;
 
   /** @brief One look. @return name of a node that has not yet received everything sent to it, empty when all have */
   std::string laggard();
@@ -38,6 +43,7 @@ public:
 private:
   using Counts = std::map<std::string, int>;  // messages by topic
 
+  void flushPublishQueues();
   bool ask(const std::string& node, const char* method, XmlRpc::XmlRpcValue& value);
   void readConnections();
   bool sentCounts(std::map<std::string, Counts>& sent);
@@ -45,6 +51,8 @@ private:
   XmlRpc::XmlRpcClient* client(const std::string& node);
 
   std::set<std::string> topics_;
+  std::atomic<std::uint64_t> poll_cycles_{0};
+  boost::signals2::connection poll_listener_;
   std::map<std::string, std::unique_ptr<XmlRpc::XmlRpcClient>> clients_;
   std::map<int, std::string> connections_;  // of this node: who is at the other end
   std::map<std::string, int> dropped_;
