@@ -6,6 +6,8 @@
 // The header forgets to say that it is C.
 extern "C"
 {
+#include <unistd.h>
+
 #include <fclib.h>
 }
 
@@ -208,7 +210,9 @@ template <typename Write>
 void writeBeside(const std::string& path, Write write)
 {
   const H5Silence silence;
-  const std::string temporary = path + ".part";
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+    throw std::runtime_error(path + ": is not a regular file, expected a file to write or a new name");
+  const std::string temporary = path + ".part" + std::to_string(getpid());
   if (!std::ofstream(temporary))
     throw std::runtime_error(path + ": cannot be written, expected a writable place");
   std::filesystem::remove(temporary);
@@ -217,7 +221,13 @@ void writeBeside(const std::string& path, Write write)
     std::filesystem::remove(temporary);
     throw std::runtime_error(path + ": libfclib could not write it");
   }
-  std::filesystem::rename(temporary, path);
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (error)
+  {
+    std::filesystem::remove(temporary);
+    throw std::runtime_error(path + ": cannot be written: " + error.message());
+  }
 }
 
 class StoredInfo

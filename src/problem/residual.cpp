@@ -105,7 +105,13 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
   data.momentum.resize(problem.velocities());
   data.term.resize(problem.velocities());
   data.momentum.noalias() = problem.M * solution.v;
-  double scale = std::max(maxAbs(data.momentum), maxAbs(problem.f));
+  // The floor of velocities, times the largest mass: below it a decaying motion is only subnormal round-off.
+  double heaviest = 0.0;
+  for (int i = 0; i < problem.M.outerSize(); ++i)
+    for (SparseRows::InnerIterator entry(problem.M, i); entry; ++entry)
+      if (entry.col() == i)
+        heaviest = std::max(heaviest, entry.value());
+  double scale = std::max({maxAbs(data.momentum), maxAbs(problem.f), VELOCITY_FLOOR * heaviest});
   data.momentum += problem.f;
   data.term.noalias() = problem.H.transpose() * solution.r;
   scale = std::max(scale, maxAbs(data.term));
@@ -119,7 +125,7 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
   residual.dynamics = scale > 0.0 ? maxAbs(data.momentum) / scale : 0.0;
 
   double worst = 0.0;
-  double largest = maxAbs(problem.b);
+  double largest = std::max(maxAbs(problem.b), VELOCITY_FLOOR);
   for (int row = 0; row < problem.bilaterals(); ++row)
   {
     double sum = problem.b[row];

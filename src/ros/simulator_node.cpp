@@ -13,6 +13,7 @@ namespace
 {
 constexpr int FREE_RUN_WINDOW = 32;  // steps between two looks at the subscribers: DeliveryMonitor
 constexpr int PACED_WINDOW = 1000;  // at a given pace queues stay short by themselves
+constexpr std::uint32_t MAX_STEPS_PER_CALL = 100000;  // of ~step
 constexpr double IDLE_PERIOD = 0.02;  // [s]
 constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
 constexpr double SETTLING_TIME = 0.5;  // between a recorder's subscription and its readiness [s]
@@ -193,6 +194,12 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
   else if (request.n == 0)
   {
     response.message = "n: found 0, expected at least 1";
+  }
+  else if (request.n > MAX_STEPS_PER_CALL)
+  {
+    // No other call is answered meanwhile.
+    response.message = "n: found " + std::to_string(request.n) + ", expected at most " +
+                       std::to_string(MAX_STEPS_PER_CALL) + "; unpause for longer runs";
   }
   else
   {

@@ -62,8 +62,9 @@ void Simulator::Impl::storeContacts(const std::vector<ContactPoint>& points)
     state.velocity = u[0] * point.normal + u[1] * row.tangent_1 + u[2] * row.tangent_2;
     state.cone_margin = row.friction * r[0] - r.tail<2>().norm();
     const auto law = static_cast<Eigen::Index>(contacts.size());  // contacts are the first laws, in this order
-    state.residual = naturalMapError(assembly.problem().laws[law], result.solution.u.data() + row.row,
-                                     result.solution.r.data() + row.row, solver->stepLengths()[law]);
+    if (isMotion(result.solution) && law < solver->stepLengths().size())
+      state.residual = naturalMapError(assembly.problem().laws[law], result.solution.u.data() + row.row,
+                                       result.solution.r.data() + row.row, solver->stepLengths()[law]);
     state.mode = modeOf(row, r, u, scenario.stopping.tolerance);
     contact_index.emplace_back(state.id, static_cast<int>(contacts.size()));
     contacts.push_back(state);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -156,6 +157,8 @@ ExternalWrench readWrench(const YamlReader& map)
   }
   readFinite(map, "from", wrench.from);
   readFinite(map, "until", wrench.until);
+  if (!(wrench.until > wrench.from))
+    map.fail("expected until later than from");
   return wrench;
 }
 
@@ -233,6 +236,8 @@ BodySpec readBody(const YamlReader& map)
                  "motion", "material", "disable_collisions"});
   BodySpec body;
   body.name = map.child("name").text();
+  if (!std::regex_match(body.name, std::regex("[A-Za-z][A-Za-z0-9_]*")))
+    map.child("name").fail("found '" + body.name + "', expected letters, digits and _, a letter first");
   body.urdf_path = readUrdfPath(map.child("urdf"));
   if (map.has("base"))
   {
@@ -330,7 +335,12 @@ Scenario readScenario(const YamlReader& document)
   if (document.has("materials"))
     readMaterials(document.child("materials"), scenario.materials);
   if (document.node()["ground"].IsDefined())
-    readGround(document.child("ground"), scenario);
+  {
+    if (document.has("ground"))
+      readGround(document.child("ground"), scenario);
+    else
+      scenario.ground = GroundSpec{};
+  }
   if (!document.has("bodies"))
     document.fail("has no bodies, expected a list of them under the key 'bodies'");
   readBodies(document.child("bodies"), scenario);

@@ -117,7 +117,7 @@ void Simulator::Impl::impactSolve()
   makeGuess(points);
   guess.r.setZero();
   solve();
-  if (!result.solution.v.allFinite())
+  if (!isMotion(result.solution))
     return;
   for (Robot& robot : world.robots)
     robot.v_middle = 0.5 * (robot.v + result.solution.v.segment(robot.v_offset, robot.model.nv));

@@ -27,6 +27,8 @@ struct Simulator::Impl
 
   void makeGuess(const std::vector<ContactPoint>& points);
   bool boundOverloadedServos();
+  /** Finite, and slower than anything that moves. */
+  static bool isMotion(const Solution& solution);
   void solve();
   void handleFailure();
   void storeContacts(const std::vector<ContactPoint>& points);

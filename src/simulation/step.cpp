@@ -14,6 +14,7 @@ namespace
 {
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always in the problem [m]
 constexpr double BOUNDED_FRACTION = 0.9;  ///< of its effort limit: from here on a servo is solved as a bounded row
+constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
 constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort limit that is round-off
 }  // namespace
 
@@ -63,7 +64,7 @@ double Simulator::Impl::lookAhead() const
   for (const Robot& robot : world.robots)
     for (size_t body = 0; body < robot.model.bodies.size(); ++body)
     {
-      if (robot.chains[body].empty())
+      if (robot.chains[body].empty() && !robot.base_motion.active)
         continue;
       const Vector6d velocity =
           pointVelocity(robot.end, static_cast<int>(body), robot.end.body_pose[body].translation());
@@ -100,6 +101,12 @@ void Simulator::Impl::solveStep(const std::vector<ContactPoint>& points)
   } while (boundOverloadedServos());
 }
 
+bool Simulator::Impl::isMotion(const Solution& solution)
+{
+  return solution.r.allFinite() && solution.v.allFinite() &&
+         (solution.v.size() == 0 || solution.v.cwiseAbs().maxCoeff() < RUNAWAY_SPEED);
+}
+
 void Simulator::Impl::solve()
 {
   // A state that has run away (after accepted failures) overflows here; it must not reach the solver as a NaN.
@@ -110,8 +117,12 @@ void Simulator::Impl::solve()
     result.status = SolverStatus::NUMERICAL_FAILURE;
     result.residual = 1.0;
     result.solution.v.setConstant(assembly.problem().velocities(), std::numeric_limits<double>::quiet_NaN());
+    result.solution.u.setZero(assembly.problem().rows());
     result.solution.r.setZero(assembly.problem().rows());
+    result.solution.lambda.setZero(assembly.problem().bilaterals());
   }
+  if (!isMotion(result.solution))
+    result.status = SolverStatus::NUMERICAL_FAILURE;
   step_failed = result.status != SolverStatus::CONVERGED;
 }
 
@@ -146,7 +157,7 @@ void Simulator::Impl::makeGuess(const std::vector<ContactPoint>& points)
 bool Simulator::Impl::boundOverloadedServos()
 {
   bool found = false;
-  if (!result.solution.v.allFinite())
+  if (!isMotion(result.solution))
     return found;
   for (Robot& robot : world.robots)
     for (size_t j = 0; j < robot.actuators.size(); ++j)
@@ -203,8 +214,7 @@ void Simulator::Impl::handleFailure()
 {
   if (!dump_folder.empty())
     dumpProblem();
-  const bool finite = result.solution.v.allFinite() && result.solution.r.allFinite();
-  if (finite && policy != FailurePolicy::HOLD)
+  if (isMotion(result.solution) && policy != FailurePolicy::HOLD)
     return;
   result.solution.v.setZero(assembly.problem().velocities());
   result.solution.u.setZero(assembly.problem().rows());

@@ -11,6 +11,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double LARGEST_NUMBER =
+    1e6;  ///< of an initial position or velocity [SI]: beyond it nothing is meant seriously
 constexpr double DROP_HEIGHT = 0.001;  ///< lowest collision point above the ground where no pose is given [m]
 
 [[noreturn]] void fail(const std::string& body, const std::string& message)
@@ -42,6 +44,8 @@ void setInitialJoints(const BodySpec& spec, Robot& robot, std::vector<std::strin
     }
   for (const auto& [name, init] : spec.joints)
   {
+    if (!(std::abs(init.position) < LARGEST_NUMBER) || !(std::abs(init.velocity) < LARGEST_NUMBER))
+      fail(robot.name, "joint '" + name + "' starts beyond 1e6 in position or velocity");
     const Joint& joint = robot.model.joints[findSingleJoint(robot, name, "joints")];
     if (init.position < joint.limit.lower || init.position > joint.limit.upper)
       warnings.push_back("body '" + robot.name + "': joint '" + name + "' starts at " + std::to_string(init.position) +
@@ -76,6 +80,10 @@ void setBasePose(Robot& robot, const Eigen::Isometry3d& pose)
 void setInitialBase(const BodySpec& spec, Robot& robot)
 {
   const bool floating = robot.model.joints.front().type == JointType::FLOATING;
+  const Eigen::Vector3d position = spec.pose ? Eigen::Vector3d(spec.pose->translation()) : Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d* vector : {&position, &spec.linear_velocity, &spec.angular_velocity})
+    if (!(vector->cwiseAbs().maxCoeff() < LARGEST_NUMBER))
+      fail(robot.name, "pose or velocity has a component that is not a number below 1e6");
   setBasePose(robot, spec.pose.value_or(Eigen::Isometry3d::Identity()));
   if (floating)
   {
@@ -112,6 +120,15 @@ void setCommands(const BodySpec& spec, Robot& robot)
     hold.target = robot.q[robot.model.joints[j].q_index];
     robot.actuators[joint] = makeActuator(robot, joint, hold);
   }
+}
+
+/** URDF's effort="0" often means that nobody filled it in. */
+void warnOfDeadDrives(const Robot& robot, std::vector<std::string>& warnings)
+{
+  for (size_t j = 0; j < robot.actuators.size(); ++j)
+    if (robot.isActuated(static_cast<int>(j)) && robot.model.joints[j].limit.effort == 0.0)
+      warnings.push_back("body '" + robot.name + "': joint '" + robot.model.joints[j].name +
+                         "' has the effort limit 0: commands do nothing there");
 }
 
 void setWrenches(const BodySpec& spec, Robot& robot)
@@ -183,7 +200,7 @@ Actuator makeActuator(const Robot& robot, int joint, const JointCommand& command
   if (command.mode == JointCommand::Mode::EFFORT)
     actuator.command.target = std::clamp(command.target, -actuator.effort_limit, actuator.effort_limit);
   else
-    fillDefaultGains(servoInertia(robot, robot.end, joint), actuator.command);
+    fillDefaultGains(robot.servo_inertia[joint], actuator.command);
   return actuator;
 }
 
@@ -191,6 +208,13 @@ void updateEnd(Robot& robot)
 {
   forwardKinematics(robot.model, robot.q, robot.end);
   forwardVelocities(robot.model, robot.v, robot.end);
+  // A moving base carries all bodies along; `reference` is its origin.
+  if (robot.base_motion.active)
+    for (Vector6d& velocity : robot.end.body_velocity)
+    {
+      velocity.head<3>() += robot.base_motion.linear;
+      velocity.tail<3>() += robot.base_motion.angular;
+    }
 }
 
 World loadWorld(const Scenario& scenario)
@@ -218,7 +242,11 @@ World loadWorld(const Scenario& scenario)
     computeMassMatrix(robot.model, robot.end);
     if (!robot.end.mass_matrix.allFinite() || !factorizeMassMatrix(robot.model, robot.damping, robot.end))
       fail(robot.name, "its mass matrix is not positive definite at the initial position");
+    for (size_t j = 0; j < robot.model.joints.size(); ++j)
+      if (robot.isActuated(static_cast<int>(j)))
+        robot.servo_inertia[j] = servoInertia(robot, robot.end, static_cast<int>(j));
     setCommands(spec, robot);
+    warnOfDeadDrives(robot, world.warnings);
     setWrenches(spec, robot);
   }
   if (scenario.ground)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,8 @@ struct RunSummary
   double loading_seconds = 0.0;
   std::uint64_t hash = 0;
 };
+
+volatile std::sig_atomic_t interrupted = 0;  ///< Ctrl-C: the files are closed and the summary is of the steps done
 
 std::vector<double> list(const Eigen::VectorXd& vector)
 {
@@ -84,7 +87,10 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
   RunSummary summary;
   summary.loading_seconds = simulator.loadingSeconds();
   const fcs::Scenario& scenario = simulator.scenario();
-  const long total = std::lround(scenario.duration / scenario.time_step);
+  const double count = std::round(scenario.duration / scenario.time_step);
+  if (!(count < 1e12) || (count < 1.0 && scenario.duration > 0.0))
+    throw std::invalid_argument("duration / time_step is " + std::to_string(count) + " steps, expected 1 to 1e12");
+  const auto total = static_cast<long>(count);
   std::unique_ptr<fcs::CsvRecorder> recorder;
   if (!options.output.empty())
     recorder = std::make_unique<fcs::CsvRecorder>(options.output);
@@ -92,7 +98,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     recorder->record(simulator, false);
   Progress progress(total);
   const auto start = std::chrono::steady_clock::now();
-  for (; summary.steps < total; ++summary.steps)
+  for (; summary.steps < total && interrupted == 0; ++summary.steps)
   {
     const fcs::StepSummary& report = simulator.step();
     summary.failed_steps += report.status != fcs::SolverStatus::CONVERGED;
@@ -181,6 +187,8 @@ json describe(const fcs::Simulator& simulator, const RunSummary& summary, bool i
 fcs::Scenario load(const Options& options)
 {
   fcs::Scenario scenario = fcs::loadScenarioFile(options.file);
+  if (std::isnan(options.duration) || std::isnan(options.time_step))
+    throw std::invalid_argument("--duration and --time-step take finite numbers");
   if (options.duration >= 0.0)
     scenario.duration = options.duration;
   if (options.time_step > 0.0)
@@ -208,7 +216,9 @@ int runAll(const Options& options)
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
   const RunSummary& median = runs[runs.size() / 2];
   std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
-  return median.failed_steps == 0 ? 0 : 1;
+  if (interrupted != 0)
+    std::cerr << "run_scenario: interrupted after " << median.steps << " steps\n";
+  return median.failed_steps == 0 && interrupted == 0 ? 0 : 1;
 }
 }  // namespace
 
@@ -242,6 +252,7 @@ int main(int argc, char** argv)
     std::cerr << "run_scenario: " << error.what() << '\n';
     return 2;
   }
+  std::signal(SIGINT, [](int) { interrupted = 1; });
   try
   {
     return runAll(options);

@@ -49,6 +49,7 @@ struct Robot
   Eigen::VectorXd implicit;  ///< nv, servo stiffness and damping on the diagonal of M
   Eigen::VectorXd damping;  ///< nv, viscous joint damping, constant [N m s/rad]
   std::vector<Actuator> actuators;  ///< one a joint; used for joints with one coordinate
+  std::vector<double> servo_inertia;  ///< joints: what a servo moves, at the initial position
   std::vector<std::vector<int>> chains;  ///< bodies: velocity coordinates that move it, ascending
   std::vector<double> extents;  ///< bodies: farthest shape point from the body origin [m]
   std::vector<ExternalWrench> wrenches;
