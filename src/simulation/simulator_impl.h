@@ -30,7 +30,7 @@ struct Simulator::Impl
   /** Finite, and slower than anything that moves. */
   static bool isMotion(const Solution& solution);
   void solve();
-  void handleFailure();
+  bool handleFailure();  ///< true when the state stands still
   void storeContacts(const std::vector<ContactPoint>& points);
   void storeJointImpulses();
   void storeReport();

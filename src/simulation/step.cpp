@@ -122,7 +122,10 @@ void Simulator::Impl::solve()
     result.solution.lambda.setZero(assembly.problem().bilaterals());
   }
   if (!isMotion(result.solution))
+  {
     result.status = SolverStatus::NUMERICAL_FAILURE;
+    result.residual = 1.0;
+  }
   step_failed = result.status != SolverStatus::CONVERGED;
 }
 
@@ -178,11 +181,11 @@ bool Simulator::Impl::boundOverloadedServos()
 
 void Simulator::Impl::advance()
 {
-  if (step_failed)
-    handleFailure();
+  const bool held = step_failed && handleFailure();
   for (Robot& robot : world.robots)
     robot.v_middle = 0.5 * (robot.v + result.solution.v.segment(robot.v_offset, robot.model.nv));
-  bookWork(assembly, world.robots, result.solution, settings.dt, false, report.energy);
+  if (!held)
+    bookWork(assembly, world.robots, result.solution, settings.dt, false, report.energy);
   for (Robot& robot : world.robots)
   {
     robot.v = result.solution.v.segment(robot.v_offset, robot.model.nv);
@@ -210,18 +213,19 @@ void Simulator::Impl::advance()
 
 /** A step without a converged answer: keep the best iterate, or, where it is not finite or the policy says so, stand.
  */
-void Simulator::Impl::handleFailure()
+bool Simulator::Impl::handleFailure()
 {
   if (!dump_folder.empty())
     dumpProblem();
   if (isMotion(result.solution) && policy != FailurePolicy::HOLD)
-    return;
+    return false;
   result.solution.v.setZero(assembly.problem().velocities());
   result.solution.u.setZero(assembly.problem().rows());
   result.solution.r.setZero(assembly.problem().rows());
   result.solution.lambda.setZero(assembly.problem().bilaterals());
   for (Robot& robot : world.robots)
     robot.v.setZero();
+  return true;
 }
 
 }  // namespace frictional_contact_sim
