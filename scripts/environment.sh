@@ -31,7 +31,7 @@ build_package()
       rm -rf "$build_dir" "$devel_dir"
     fi
     cmake -S "$package_dir" -B "$build_dir" -DCMAKE_BUILD_TYPE=Release -DCATKIN_DEVEL_PREFIX="$devel_dir" \
-      -DWARNINGS_AS_ERRORS=ON "${options[@]}" >&2 || return
+      -DWARNINGS_AS_ERRORS=ON -DCATKIN_ENABLE_TESTING=OFF "${options[@]}" >&2 || return
     touch "$stamp"
   fi
   local code=0
