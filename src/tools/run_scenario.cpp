@@ -6,11 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/simulation/csv_recorder.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
@@ -30,6 +33,9 @@ struct Options
   std::string output;
   bool json_output = false;
   int repeat = 1;
+  std::string dump;
+  int dump_every = 1;
+  bool dump_local = false;
 };
 
 /** What is worst over all steps of a run. */
@@ -82,6 +88,27 @@ private:
   bool shown_ = false;
 };
 
+/** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem. */
+void dumpProblem(const fcs::Simulator& simulator, const Options& options)
+{
+  const fcs::IncrementalProblem& problem = simulator.problem();
+  if (problem.rows() == 0)
+    return;
+  const fcs::StepSummary& report = simulator.report();
+  const std::string& name = simulator.scenario().name;
+  const std::string step = std::to_string(report.step);
+  fcs::FclibInfo info;
+  info.title = name + " step " + step;
+  info.description = "one time step of " + std::to_string(report.dt) +
+                     " s; w (q) contains the shift of the normal law (gap/dt, restitution); joint limits, bounded "
+                     "servos and dry joint friction are encoded as problem/fclib.h says; no solution is stored";
+  const std::string path = options.dump + "/" + name + "_" + std::to_string(report.contacts) + "_" + step + ".hdf5";
+  if (options.dump_local)
+    fcs::writeFclib(path, fcs::reduce(problem), info);
+  else
+    fcs::writeFclib(path, problem, info);
+}
+
 RunSummary run(fcs::Simulator& simulator, const Options& options)
 {
   RunSummary summary;
@@ -107,6 +134,8 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     summary.max_bilateral_violation = std::max(summary.max_bilateral_violation, report.bilateral_violation);
     if (recorder)
       recorder->record(simulator, true);
+    if (!options.dump.empty() && (summary.steps + 1) % options.dump_every == 0)
+      dumpProblem(simulator, options);
     if (summary.steps % 100 == 0)
       progress.update(summary.steps, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
@@ -201,6 +230,8 @@ fcs::Scenario load(const Options& options)
 int runAll(const Options& options)
 {
   const fcs::Scenario scenario = load(options);
+  if (!options.dump.empty())
+    std::filesystem::create_directories(options.dump);
   std::unique_ptr<fcs::Simulator> simulator;
   std::vector<RunSummary> runs;
   for (int i = 0; i < options.repeat; ++i)
@@ -239,6 +270,15 @@ int main(int argc, char** argv)
   app.add_option("--repeat", options.repeat,
                  "runs; the median time is printed, and whether all runs gave the same bits")
       ->check(CLI::Range(1, 100000));
+  CLI::Option* dump = app.add_option("--dump", options.dump,
+                                     "folder for the friction problems of steps as FCLib files "
+                                     "SCENARIO_CONTACTS_STEP.hdf5, converged or not");
+  app.add_option("--dump-every", options.dump_every, "steps N, 2N, 3N, ... are dumped")
+      ->check(CLI::Range(1, 1000000000))
+      ->needs(dump);
+  app.add_flag("--dump-local", options.dump_local,
+               "dump the local problem (W, q) instead of the global one (M, f, H, w)")
+      ->needs(dump);
   try
   {
     app.parse(argc, argv);
