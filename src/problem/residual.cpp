@@ -72,6 +72,9 @@ double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_len
     row += dimension;
   }
   const double velocity = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  // r - P(r - rho u) is exactly zero once u is below the round-off of r/rho: that confirms nothing.
+  if (impulse > impulse_cap * velocity)
+    worst = std::max(worst, std::numeric_limits<double>::epsilon() * impulse);
   return worst / std::max(velocity, std::min(impulse, impulse_cap * velocity));
 }
 

@@ -39,7 +39,8 @@ void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_le
  * @param round_off errors up to this count as zero [m/s]
  * @param impulse_cap the impulses' part of the scale counts at most this many times the velocities' part [-]; infinite
  * in the definition of E. A finite one makes the solvers' stopping criterion: where no solution exists impulses run
- * away, and E alone would vanish while the violation stays.
+ * away, and E alone would vanish while the violation stays. Beyond the cap no error counts less than the round-off of
+ * |r_i|/rho_i, in which u is lost.
  * @param errors when not nullptr, |e_i| of each law [m/s] (resized)
  */
 double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
