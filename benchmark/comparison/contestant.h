@@ -1,0 +1,50 @@
+#pragma once
+/**
+ * @file contestant.h
+ * @brief One way to solve a local problem u = W r + q, ours or Siconos's, behind one face for the stop watch.
+ *
+ * A contestant copies the problem into its own native form when it is made. prepare() sets its tolerance and is not
+ * timed; solve() starts from r = 0 and is timed.
+ */
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/problem/delassus_problem.h"
+
+namespace comparison
+{
+class Contestant
+{
+public:
+  virtual ~Contestant() = default;
+  /** @brief Sets the tolerance (each side's own norm) for the next solve(). */
+  virtual void prepare(double tolerance) = 0;
+  /** @brief Solves from r = 0. @return whether the solver itself says that it converged */
+  virtual bool solve() = 0;
+  /** @brief Impulses of the last solve(). */
+  virtual const Eigen::VectorXd& impulses() const = 0;
+};
+
+/** @brief A contestant before it is made. Making it may crash (Siconos), so only a child process does it. */
+struct Entry
+{
+  std::string solver;  ///< name in the tables
+  std::string variant;  ///< storage and options; the quickest variant of a solver stands for it
+  bool ours = false;
+  std::function<std::unique_ptr<Contestant>()> make;
+};
+
+/** @brief A method of our registry. @throws std::invalid_argument on an unknown name */
+Entry ourEntry(const frictional_contact_sim::DelassusProblem& problem, const std::string& solver, double time_limit);
+
+/**
+ * @brief All variants of Siconos's solvers for a problem of 2D or 3D Coulomb contacts; none for other laws.
+ * @param names keep only these; empty = all
+ */
+std::vector<Entry> siconosEntries(const frictional_contact_sim::DelassusProblem& problem,
+                                  const std::vector<std::string>& names);
+
+}  // namespace comparison
