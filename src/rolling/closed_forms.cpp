@@ -1,0 +1,61 @@
+#include "frictional_contact_sim/rolling/closed_forms.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr double PI = 3.14159265358979323846;
+
+/// sqrt(1 - (x/a)^2) inside, 0 outside.
+double ellipse(double x, double a)
+{
+  return a > 0.0 && std::abs(x) < a ? std::sqrt(1.0 - x * x / (a * a)) : 0.0;
+}
+}  // namespace
+
+double HertzLine::pressure(double x) const
+{
+  return peak_pressure * ellipse(x, half_width);
+}
+
+HertzLine hertzLine(double load, double radius, double reduced_modulus)
+{
+  HertzLine hertz;
+  hertz.half_width = std::sqrt(4.0 * load * radius / (PI * reduced_modulus));
+  hertz.peak_pressure = 2.0 * load / (PI * hertz.half_width);
+  return hertz;
+}
+
+double cattaneoStickHalfWidth(const HertzLine& hertz, double load_share)
+{
+  return hertz.half_width * std::sqrt(std::max(0.0, 1.0 - load_share));
+}
+
+double cattaneoTraction(const HertzLine& hertz, double friction, double load_share, double x)
+{
+  const double c = cattaneoStickHalfWidth(hertz, load_share);
+  return friction * hertz.peak_pressure * (ellipse(x, hertz.half_width) - c / hertz.half_width * ellipse(x, c));
+}
+
+double carterSaturation(const HertzLine& hertz, double radius, double friction)
+{
+  return friction * hertz.half_width / radius;
+}
+
+double carterLoadShare(const HertzLine& hertz, double radius, double friction, double creepage)
+{
+  const double stick = std::max(0.0, 1.0 - creepage / carterSaturation(hertz, radius, friction));
+  return 1.0 - stick * stick;
+}
+
+double carterTraction(const HertzLine& hertz, double radius, double friction, double creepage, double x)
+{
+  const double a = hertz.half_width;
+  const double c = a * std::max(0.0, 1.0 - creepage / carterSaturation(hertz, radius, friction));
+  return friction * hertz.peak_pressure * (ellipse(x, a) - c / a * ellipse(x - a + c, c));
+}
+
+}  // namespace frictional_contact_sim
