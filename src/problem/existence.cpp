@@ -1,0 +1,483 @@
+#include "frictional_contact_sim/problem/existence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "existence_certificate.h"
+#include "frictional_contact_sim/math/cone.h"
+#include "linear_program.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+constexpr double PI = 3.14159265358979323846;
+/// While only the sign matters s is not driven beyond this, in units of R max|H|: a margin of about |w|.
+constexpr double ENOUGH = 1e-3;
+constexpr int APPROACH_ITERATIONS = 2000;
+/// A proof of impossibility must hold for velocities this many times R.
+constexpr double EXCLUSION = 1e6;
+/// Violation of a cone at a linear program's solution that is worth another facet, in the program's units.
+constexpr double CUT_TOLERANCE = 1e-10;
+
+/** Largest eigenvalue of H^T H from above: the largest row sum of |H^T H|, bounded by norms of H. */
+double squaredNorm(const SparseRows& H)
+{
+  const SparseRows sizes = H.cwiseAbs();
+  const Eigen::VectorXd ones_right = Eigen::VectorXd::Ones(H.cols());
+  const Eigen::VectorXd ones_left = Eigen::VectorXd::Ones(H.rows());
+  const double rows = (sizes * ones_right).lpNorm<Eigen::Infinity>();
+  const double columns = (sizes.transpose() * ones_left).lpNorm<Eigen::Infinity>();
+  return std::max(rows * columns, 1e-300);
+}
+
+/**
+ * The linear program in units of R for v and R max|H| for u and s, so that its data are about one:
+ *   min -s,   H v - u = -w,   E v = -b,   u_N - s - c d.u_T >= 0 for every facet (cone, d, c),   |v| <= 1
+ */
+class CriterionProgram
+{
+public:
+  CriterionProgram(const ContactKinematics& kinematics, double bound, double height, double cap)
+    : kinematics_(kinematics), bound_(bound), height_(height)
+  {
+    const int size = static_cast<int>(kinematics.H.cols());
+    for (int j = 0; j < size; ++j)
+      program_.addColumn(-1.0, 1.0, 0.0);
+    first_u_ = size;
+    for (int j = 0; j < kinematics.H.rows(); ++j)
+      program_.addColumn(-LinearProgram::INFINITE, LinearProgram::INFINITE, 0.0);
+    s_ = program_.addColumn(-LinearProgram::INFINITE, cap, -1.0);
+    addMatrix(kinematics.H, kinematics.w, first_u_);
+    first_bilateral_ = addMatrix(kinematics.E, kinematics.b, -1);
+  }
+
+  /** u_N - s >= slope d.u_T; slope = 0: the normal alone. */
+  void addFacet(int index, const Eigen::Vector2d& direction, double slope)
+  {
+    const DualCone& cone = kinematics_.cones[static_cast<std::size_t>(index)];
+    std::vector<int> columns = {first_u_ + cone.row, s_};
+    std::vector<double> values = {1.0, -1.0};
+    for (int k = 0; k + 1 < cone.dimension && slope != 0.0; ++k)
+    {
+      columns.push_back(first_u_ + cone.row + 1 + k);
+      values.push_back(-slope * direction[k]);
+    }
+    facets_.push_back({program_.addRow(0.0, LinearProgram::INFINITE, columns, values), index, slope * direction});
+  }
+
+  bool solve(int max_iterations)
+  {
+    if (!program_.solve(max_iterations))
+      return false;
+    x_ = program_.solution();
+    return true;
+  }
+
+  Eigen::VectorXd v() const { return bound_ * x_.head(first_u_); }
+  double s() const { return x_[s_]; }
+  /** Scaled velocity of a row. */
+  double u(int row) const { return x_[first_u_ + row]; }
+  double unit() const { return bound_ * height_; }
+
+  /** The multipliers of the facets as impulses in L; they sum up to one. */
+  void multipliers(Eigen::VectorXd& r, Eigen::VectorXd& lambda) const
+  {
+    const Eigen::VectorXd prices = program_.prices();
+    r.setZero(kinematics_.H.rows());
+    for (const Facet& facet : facets_)
+    {
+      const DualCone& cone = kinematics_.cones[static_cast<std::size_t>(facet.cone)];
+      const double price = std::max(0.0, prices[facet.row]);
+      r[cone.row] += price;
+      r.segment(cone.row + 1, cone.dimension - 1) -= price * facet.slope.head(cone.dimension - 1);
+    }
+    lambda = prices.segment(first_bilateral_, kinematics_.E.rows());
+  }
+
+private:
+  struct Facet
+  {
+    int row;
+    int cone;
+    Eigen::Vector2d slope;
+  };
+
+  int addMatrix(const SparseRows& matrix, const Eigen::VectorXd& offset, int first_slack)
+  {
+    int first = -1;
+    std::vector<int> columns;
+    std::vector<double> values;
+    for (int j = 0; j < matrix.rows(); ++j)
+    {
+      columns.clear();
+      values.clear();
+      for (SparseRows::InnerIterator entry(matrix, j); entry; ++entry)
+      {
+        columns.push_back(static_cast<int>(entry.col()));
+        values.push_back(entry.value() / height_);
+      }
+      if (first_slack >= 0)
+      {
+        columns.push_back(first_slack + j);
+        values.push_back(-1.0);
+      }
+      const double right = -offset[j] / unit();
+      const int row = program_.addRow(right, right, columns, values);
+      if (first < 0)
+        first = row;
+    }
+    return std::max(first, 0);
+  }
+
+  const ContactKinematics& kinematics_;
+  double bound_;
+  double height_;
+  LinearProgram program_;
+  int first_u_ = 0;
+  int s_ = 0;
+  int first_bilateral_ = 0;
+  std::vector<Facet> facets_;
+  Eigen::VectorXd x_;
+};
+
+class Criterion
+{
+public:
+  Criterion(const ContactKinematics& kinematics, const ExistenceOptions& options)
+    : kinematics_(kinematics), options_(options), correction_(kinematics)
+  {
+    for (const DualCone& cone : kinematics.cones)
+      curved_ = curved_ || (cone.dimension == 3 && cone.friction > 0.0);
+    double logarithms = 0.0;
+    int count = 0;
+    for (const DualCone& cone : kinematics.cones)
+    {
+      const double norm = kinematics.H.middleRows(cone.row, cone.dimension).norm();
+      height_ = std::max(height_, norm);
+      if (norm > 0.0)
+      {
+        logarithms += std::log(norm);
+        ++count;
+      }
+    }
+    report_.margin = -INFINITE;
+    report_.upper_bound = INFINITE;
+    bound_ = options.velocity_bound;
+    const double speed = std::max(kinematics.w.size() > 0 ? kinematics.w.lpNorm<Eigen::Infinity>() : 0.0,
+                                  kinematics.b.size() > 0 ? kinematics.b.lpNorm<Eigen::Infinity>() : 0.0);
+    if (bound_ == 0.0)
+      bound_ = count > 0 && speed > 0.0 ? 1e3 * speed / std::exp(logarithms / count) : 1.0;
+    if (height_ == 0.0)
+      height_ = 1.0;
+    report_.velocity_bound = bound_;
+  }
+
+  ExistenceReport run()
+  {
+    consider(Eigen::VectorXd::Zero(kinematics_.H.cols()));
+    if (!decided() && !options_.maximise)
+      approachCones();
+    if (!decided() && curved_ && !options_.maximise)
+      insideCones();
+    if (!decided())
+      outsideCones();
+    if (report_.margin >= 0.0)
+      certify();
+    else
+      refute();
+    return std::move(report_);
+  }
+
+private:
+  bool decided() const { return kinematics_.cones.empty() || (report_.margin >= 0.0 && !options_.maximise); }
+
+  void consider(Eigen::VectorXd v)
+  {
+    const double missing = correction_.apply(v);
+    const double margin = verifiedMargin(kinematics_, v, missing);
+    if (margin > report_.margin || report_.v.size() == 0)
+    {
+      report_.margin = margin;
+      report_.v = v;
+    }
+  }
+
+  void addPolygon(CriterionProgram& program, double widening) const
+  {
+    for (std::size_t i = 0; i < kinematics_.cones.size(); ++i)
+    {
+      const DualCone& cone = kinematics_.cones[i];
+      const int index = static_cast<int>(i);
+      if (cone.dimension == 1 || cone.friction == 0.0)
+        program.addFacet(index, Eigen::Vector2d::Zero(), 0.0);
+      else if (cone.dimension == 2)
+        for (const double side : {1.0, -1.0})
+          program.addFacet(index, Eigen::Vector2d(side, 0.0), cone.friction);
+      else
+        for (int k = 0; k < options_.facets; ++k)
+        {
+          const double angle = 2.0 * PI * k / options_.facets;
+          program.addFacet(index, Eigen::Vector2d(std::cos(angle), std::sin(angle)), cone.friction * widening);
+        }
+    }
+  }
+
+  /**
+   * Minimises 1/2 dist^2(H v + w - s e, L*) for one s by accelerated gradients with restart: where the criterion holds
+   * with room this is much cheaper than a linear program. In units of w for u, of w/|H| for v.
+   */
+  void approachCones()
+  {
+    const double goal = std::max(kinematics_.w.size() > 0 ? kinematics_.w.lpNorm<Eigen::Infinity>() : 0.0, 1e-300);
+    const double step = 1.0 / squaredNorm(kinematics_.H);
+    Eigen::VectorXd v = report_.v;
+    Eigen::VectorXd previous = v, point = v;
+    double momentum = 1.0;
+    for (int iteration = 0; iteration < APPROACH_ITERATIONS && !decided(); ++iteration)
+    {
+      const Eigen::VectorXd gradient = kinematics_.H.transpose() * outside(point, goal);
+      previous.swap(v);
+      v = point - step * gradient;
+      correction_.apply(v);
+      if (!(v.lpNorm<Eigen::Infinity>() <= bound_))
+        return;
+      const double next =
+          gradient.dot(v - previous) > 0.0 ? 1.0 : 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
+      point = v + (next > 1.0 ? (momentum - 1.0) / next : 0.0) * (v - previous);
+      momentum = next;
+      if (iteration % 10 == 9)
+        consider(v);
+    }
+  }
+
+  /** H v + w - s e minus its projection on L*: opposite to an element of L. */
+  Eigen::VectorXd outside(const Eigen::VectorXd& v, double s) const
+  {
+    const Eigen::VectorXd u = kinematics_.H * v + kinematics_.w;
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
+    for (const DualCone& cone : kinematics_.cones)
+    {
+      Eigen::Vector3d y = Eigen::Vector3d::Zero();
+      y.head(cone.dimension) = u.segment(cone.row, cone.dimension);
+      y[0] -= s;
+      result.segment(cone.row, cone.dimension) = -projectOntoCone<3>(-y, cone.friction).head(cone.dimension);
+    }
+    return result;
+  }
+
+  /** Facets touching the inside: every feasible v is a certificate. */
+  void insideCones()
+  {
+    CriterionProgram program(kinematics_, bound_, height_, ENOUGH);
+    addPolygon(program, 1.0 / std::cos(PI / options_.facets));
+    ++report_.rounds;
+    if (program.solve(options_.max_simplex_iterations))
+      consider(program.v());
+  }
+
+  /** Facets touching from outside, refined where the point leaves the cone. */
+  void outsideCones()
+  {
+    CriterionProgram program(kinematics_, bound_, height_, options_.maximise ? LinearProgram::INFINITE : ENOUGH);
+    addPolygon(program, 1.0);
+    while (report_.rounds < options_.max_rounds)
+    {
+      ++report_.rounds;
+      if (!program.solve(options_.max_simplex_iterations))
+      {
+        report_.message = "the simplex method stopped without an optimum";
+        return;
+      }
+      consider(program.v());
+      if (program.s() < ENOUGH || options_.maximise)
+        report_.upper_bound = program.s() * program.unit();
+      Eigen::VectorXd lambda;
+      program.multipliers(report_.multiplier, lambda);
+      blocking();
+      if (decided() || addCuts(program) == 0 ||
+          report_.upper_bound - report_.margin <= options_.gap * std::abs(report_.upper_bound))
+        return;
+      if (program.s() < 0.0 && excluded(lambda))
+        return;
+    }
+  }
+
+  bool excluded(const Eigen::VectorXd& lambda)
+  {
+    report_.excluded_below = verifiedExclusion(kinematics_, report_.multiplier, lambda);
+    report_.criterion_violated = report_.excluded_below >= EXCLUSION * bound_;
+    return report_.criterion_violated;
+  }
+
+  void blocking()
+  {
+    report_.blocking.clear();
+    for (const DualCone& cone : kinematics_.cones)
+      if (report_.multiplier[cone.row] > 1e-9)
+        report_.blocking.push_back(cone.law);
+  }
+
+  int addCuts(CriterionProgram& program) const
+  {
+    int cuts = 0;
+    for (std::size_t i = 0; i < kinematics_.cones.size(); ++i)
+    {
+      const DualCone& cone = kinematics_.cones[i];
+      if (cone.dimension != 3 || cone.friction == 0.0)
+        continue;
+      const Eigen::Vector2d tangent(program.u(cone.row + 1), program.u(cone.row + 2));
+      const double length = tangent.norm();
+      if (cone.friction * length <= program.u(cone.row) - program.s() + CUT_TOLERANCE)
+        continue;
+      program.addFacet(static_cast<int>(i), tangent / length, cone.friction);
+      ++cuts;
+    }
+    return cuts;
+  }
+
+  void certify()
+  {
+    report_.verdict = Existence::CERTIFIED;
+    report_.multiplier.resize(0);
+    report_.message = kinematics_.cones.empty() ? "nothing restricts the velocities"
+                                                : "a velocity inside the dual cones was verified";
+  }
+
+  /** Without friction the criterion is necessary; u_N >= 0 everywhere is necessary for any friction. */
+  void refute()
+  {
+    const std::string obstacle = report_.message;
+    const Eigen::VectorXd multiplier = report_.multiplier;
+    ContactKinematics normals = kinematics_;
+    for (DualCone& cone : normals.cones)
+      cone.friction = 0.0;
+    CriterionProgram program(normals, bound_, height_, ENOUGH);
+    for (std::size_t i = 0; i < normals.cones.size(); ++i)
+      program.addFacet(static_cast<int>(i), Eigen::Vector2d::Zero(), 0.0);
+    ++report_.rounds;
+    if (program.solve(options_.max_simplex_iterations) && program.s() < 0.0)
+    {
+      Eigen::VectorXd r, lambda;
+      program.multipliers(r, lambda);
+      const double excluded_below = verifiedExclusion(normals, r, lambda);
+      if (excluded_below >= EXCLUSION * bound_)
+      {
+        report_.verdict = Existence::REFUTED;
+        report_.criterion_violated = true;
+        report_.excluded_below = excluded_below;
+        report_.multiplier = r;
+        blocking();
+        report_.message = "no velocity keeps all contacts from penetrating";
+        return;
+      }
+    }
+    if (report_.criterion_violated)
+      report_.message = "no velocity satisfies the criterion, which is not necessary";
+    else
+    {
+      report_.multiplier.resize(0);
+      report_.message = obstacle.empty() ? "no velocity inside the dual cones was found" : obstacle;
+    }
+  }
+
+  const ContactKinematics& kinematics_;
+  const ExistenceOptions& options_;
+  BilateralCorrection correction_;
+  ExistenceReport report_;
+  double bound_ = 1.0;
+  double height_ = 0.0;
+  bool curved_ = false;
+};
+
+void copyRow(const SparseRows& matrix, int row, int target, std::vector<Eigen::Triplet<double>>& entries)
+{
+  for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
+    entries.emplace_back(target, static_cast<int>(entry.col()), entry.value());
+}
+
+/** BILATERAL laws become rows of E, DRY_FRICTION rows restrict nothing. */
+ContactKinematics collect(const SparseRows& H, const Eigen::VectorXd& w, const std::vector<Law>& laws,
+                          const SparseRows* G, const Eigen::VectorXd* b)
+{
+  ContactKinematics kinematics;
+  kinematics.H = H;
+  kinematics.w = w;
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> offsets;
+  int row = 0;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+  {
+    const Law& law = laws[i];
+    if (law.isCoulomb() || law.type == LawType::UNILATERAL)
+      kinematics.cones.push_back({static_cast<int>(i), row, law.dimension(), law.isCoulomb() ? law.coefficient : 0.0});
+    else if (law.type == LawType::BILATERAL)
+    {
+      copyRow(H, row, static_cast<int>(offsets.size()), entries);
+      offsets.push_back(w[row]);
+    }
+    row += law.dimension();
+  }
+  for (int j = 0; G != nullptr && j < G->rows(); ++j)
+  {
+    copyRow(*G, j, static_cast<int>(offsets.size()), entries);
+    offsets.push_back((*b)[j]);
+  }
+  const auto count = static_cast<Eigen::Index>(offsets.size());
+  kinematics.E.resize(count, H.cols());
+  kinematics.E.setFromTriplets(entries.begin(), entries.end());
+  kinematics.b = Eigen::Map<const Eigen::VectorXd>(offsets.data(), count);
+  return kinematics;
+}
+}  // namespace
+
+const char* toString(Existence existence)
+{
+  switch (existence)
+  {
+    case Existence::CERTIFIED:
+      return "CERTIFIED";
+    case Existence::REFUTED:
+      return "REFUTED";
+    case Existence::UNDECIDED:
+      break;
+  }
+  return "UNDECIDED";
+}
+
+void ExistenceOptions::validate() const
+{
+  const auto require = [](bool condition, const std::string& text)
+  {
+    if (!condition)
+      throw std::invalid_argument("existence: " + text);
+  };
+  require(std::isfinite(velocity_bound) && velocity_bound >= 0.0,
+          "velocity_bound is " + std::to_string(velocity_bound) + ", expected >= 0");
+  require(facets >= 3, "facets is " + std::to_string(facets) + ", expected at least 3");
+  require(max_rounds >= 1, "max_rounds is " + std::to_string(max_rounds) + ", expected at least 1");
+  require(max_simplex_iterations >= 1,
+          "max_simplex_iterations is " + std::to_string(max_simplex_iterations) + ", expected at least 1");
+  require(gap > 0.0, "gap is " + std::to_string(gap) + ", expected > 0");
+}
+
+ExistenceReport checkExistence(const IncrementalProblem& problem, const ExistenceOptions& options)
+{
+  validate(problem);
+  options.validate();
+  const ContactKinematics kinematics = collect(problem.H, problem.w, problem.laws, &problem.G, &problem.b);
+  return Criterion(kinematics, options).run();
+}
+
+ExistenceReport checkExistence(const DelassusProblem& problem, const ExistenceOptions& options)
+{
+  validate(problem);
+  options.validate();
+  const ContactKinematics kinematics = collect(problem.W.toSparse(), problem.q, problem.laws, nullptr, nullptr);
+  return Criterion(kinematics, options).run();
+}
+
+}  // namespace frictional_contact_sim

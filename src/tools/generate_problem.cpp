@@ -1,0 +1,179 @@
+/**
+ * @file generate_problem.cpp
+ * @brief Command generate_problem: writes problems of the random and rigid families as FCLib files, whose info names
+ * the family, every parameter and the verdict on existence (problem/existence.h). Exit 0 written, 2 bad input.
+ */
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <sstream>
+
+#include "frictional_contact_sim/problem/existence.h"
+#include "frictional_contact_sim/problem/fclib.h"
+#include "frictional_contact_sim/problem/random_family.h"
+#include "frictional_contact_sim/problem/rigid_families.h"
+#include "tool_support.h"
+
+namespace
+{
+using namespace frictional_contact_sim;
+
+struct Arguments
+{
+  std::string output;
+  RandomFamilyOptions random;
+  RigidFamilyOptions rigid;
+  double friction = -1.0;  ///< both ends of the range; negative: not given
+  int contacts = 1000;
+  int width = 0;
+  int levels = 5;
+  int points_per_side = 2;
+};
+
+std::string describe(const RandomFamilyOptions& options)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << "velocities " << options.velocities << ", contacts " << options.contacts << ", subsystem_velocities "
+       << options.subsystem_velocities << ", condition " << options.condition << ", external_velocity "
+       << options.external_velocity << ", friction " << options.friction_min << " to " << options.friction_max
+       << ", seed " << options.seed;
+  return text.str();
+}
+
+std::string describe(const RigidFamilyOptions& options)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << "friction " << options.friction_min << " to " << options.friction_max << ", mass_ratio " << options.mass_ratio
+       << ", agitation " << options.agitation << ", time_step " << options.time_step << ", tilt " << options.tilt
+       << ", seed " << options.seed;
+  return text.str();
+}
+
+/** Writes one problem with its verdict and says so in one line. */
+void write(const std::string& path, const IncrementalProblem& problem, const std::string& family,
+           const std::string& parameters)
+{
+  const ExistenceReport existence = checkExistence(problem);
+  char margin[32];
+  std::snprintf(margin, sizeof(margin), "%.3g", existence.margin);
+  const std::string verdict =
+      std::string("existence ") + toString(existence.verdict) + " (margin " + margin + ", " + existence.message + ")";
+  writeFclib(path, problem, {family, "family " + family + ": " + parameters + "; " + verdict, ""});
+  std::printf("%s: %zu contacts, %d velocities, %s\n", path.c_str(), problem.laws.size(), problem.velocities(),
+              verdict.c_str());
+}
+
+void writeTable(const std::string& folder, const std::vector<RandomFamilyEntry>& table)
+{
+  std::filesystem::create_directories(folder);
+  tools::ProgressBar progress(static_cast<long>(table.size()));
+  long done = 0;
+  for (const RandomFamilyEntry& entry : table)
+  {
+    progress.clear();
+    write((std::filesystem::path(folder) / (entry.name + ".hdf5")).string(), randomFamilyProblem(entry.options),
+          entry.name, describe(entry.options));
+    std::fflush(stdout);
+    progress.update(++done);
+  }
+}
+
+void addRandomOptions(CLI::App& command, RandomFamilyOptions& options)
+{
+  command.add_option("--velocities", options.velocities, "m, a multiple of --subsystem")->capture_default_str();
+  command.add_option("--contacts", options.contacts, "n, in 3D")->capture_default_str();
+  command.add_option("--subsystem", options.subsystem_velocities, "velocities of one sub-system")
+      ->capture_default_str();
+  command.add_option("--condition", options.condition, "of each sub-system's mass matrix [-]")->capture_default_str();
+  command
+      .add_option("--external-velocity", options.external_velocity,
+                  "deviation of w [m/s]; 0: nothing outside moves, always solvable")
+      ->capture_default_str();
+  command.add_option("--friction-min", options.friction_min, "uniform from here [-]")->capture_default_str();
+  command.add_option("--friction-max", options.friction_max, "to here [-]")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+}
+
+void addRigidOptions(CLI::App& command, Arguments& arguments)
+{
+  RigidFamilyOptions& options = arguments.rigid;
+  command.add_option("--friction", arguments.friction, "of all contacts [-] (default 0.3)");
+  command.add_option("--mass-ratio", options.mass_ratio, "largest mass over smallest [-]")->capture_default_str();
+  command.add_option("--agitation", options.agitation, "deviation of the velocities before the step [m/s, rad/s]")
+      ->capture_default_str();
+  command.add_option("--time-step", options.time_step, "[s]")->capture_default_str();
+  command.add_option("--tilt", options.tilt, "gravity from the vertical [rad]")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+}
+
+RigidFamilyOptions rigidOptions(const Arguments& arguments)
+{
+  RigidFamilyOptions options = arguments.rigid;
+  if (arguments.friction != -1.0)
+    options.friction_min = options.friction_max = arguments.friction;
+  return options;
+}
+
+void writeGranular(const Arguments& arguments)
+{
+  const RigidFamilyOptions options = rigidOptions(arguments);
+  const std::string shape =
+      "contacts " + std::to_string(arguments.contacts) + ", width " + std::to_string(arguments.width) + ", ";
+  write(arguments.output, granularProblem(arguments.contacts, arguments.width, options), "granular",
+        shape + describe(options));
+}
+
+void writeBoxes(const Arguments& arguments)
+{
+  const RigidFamilyOptions options = rigidOptions(arguments);
+  const std::string shape = "levels " + std::to_string(arguments.levels) + ", points_per_side " +
+                            std::to_string(arguments.points_per_side) + ", ";
+  write(arguments.output, boxStackProblem(arguments.levels, arguments.points_per_side, options), "boxes",
+        shape + describe(options));
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  Arguments arguments;
+  std::function<void()> action;
+  CLI::App app(
+      "Writes frictional contact problems of chosen families as FCLib files (global form). The file's info names the\n"
+      "family, its parameters and whether a solution is certified to exist. Exit 0: written, 2: bad input.",
+      "generate_problem");
+  app.require_subcommand(1);
+  const auto add = [&](const char* name, const char* help, const char* output, std::function<void()> run)
+  {
+    CLI::App* command = app.add_subcommand(name, help);
+    command->add_option(output, arguments.output, "written; an existing one is replaced")->required();
+    command->callback([&action, run] { action = run; });
+    return command;
+  };
+  addRandomOptions(
+      *add("alea", "one random problem alea-m-n of the thesis", "OUT",
+           [&] { write(arguments.output, randomFamilyProblem(arguments.random), "alea", describe(arguments.random)); }),
+      arguments.random);
+  add("alea-small", "the 15 problems of table 5.1 with fixed seeds", "DIR",
+      [&] { writeTable(arguments.output, smallRandomFamily()); });
+  add("alea-large", "the 15 problems of table 5.2 with fixed seeds", "DIR",
+      [&] { writeTable(arguments.output, largeRandomFamily()); });
+  CLI::App* granular =
+      add("granular", "balls on a cubic lattice under gravity", "OUT", [&] { writeGranular(arguments); });
+  granular->add_option("--contacts", arguments.contacts, "n")->capture_default_str();
+  granular->add_option("--width", arguments.width, "balls along x and y; 0: a cube, 1: a chain")->capture_default_str();
+  addRigidOptions(*granular, arguments);
+  CLI::App* boxes = add("boxes", "a stack of cubes; hyperstatic: rank H = 6 a cube, 3 p^2 rows an interface", "OUT",
+                        [&] { writeBoxes(arguments); });
+  boxes->add_option("--levels", arguments.levels, "cubes")->capture_default_str();
+  boxes->add_option("--points-per-side", arguments.points_per_side, "p: p x p contacts an interface")
+      ->capture_default_str();
+  addRigidOptions(*boxes, arguments);
+  return tools::runTool(app, argc, argv,
+                        [&]
+                        {
+                          action();
+                          return tools::SUCCESS;
+                        });
+}

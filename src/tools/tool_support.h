@@ -1,0 +1,99 @@
+#pragma once
+/**
+ * @file tool_support.h
+ * @brief What several command-line tools share: exit codes, progress bar, clocks, the frame of main().
+ */
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <ctime>
+#include <iostream>
+#include <string>
+
+namespace frictional_contact_sim
+{
+namespace tools
+{
+/// INTERFACES.md, section 3: 0 all well, 1 something did not converge, 2 bad input.
+constexpr int SUCCESS = 0;
+constexpr int NOT_CONVERGED = 1;
+constexpr int BAD_INPUT = 2;
+
+/** @brief CPU time of this thread [s]; does not count what other processes take. */
+inline double threadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/** @brief A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
+class ProgressBar
+{
+public:
+  explicit ProgressBar(long total)
+    : total_(total), terminal_(isatty(STDERR_FILENO) != 0), start_(std::chrono::steady_clock::now())
+  {
+  }
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /** @brief Cheap enough for every step of fast work: looks at the clock only when the percentage has changed. */
+  void update(long done)
+  {
+    const long percent = total_ > 0 ? 100 * done / total_ : 100;
+    if (!terminal_ || percent == last_)
+      return;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < 2.0)
+      return;
+    last_ = percent;
+    shown_ = true;
+    const auto filled = static_cast<std::size_t>(percent * WIDTH / 100);
+    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
+              << std::flush;
+  }
+
+  /** @brief Wipes the bar, so that a line of text can be written; the next update draws it again. */
+  void clear()
+  {
+    if (shown_)
+      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r' << std::flush;
+    shown_ = false;
+    last_ = -1;
+  }
+
+private:
+  static constexpr std::size_t WIDTH = 40;
+  long total_;
+  long last_ = -1;
+  bool terminal_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/** @brief Parses, runs, and turns every exception into one line and BAD_INPUT. run() returns the exit code. */
+template <typename Run>
+int runTool(CLI::App& app, int argc, char** argv, const Run& run)
+{
+  try
+  {
+    app.parse(argc, argv);
+    return run();
+  }
+  catch (const CLI::ParseError& error)
+  {
+    if (error.get_exit_code() == 0)
+      return app.exit(error);
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+  }
+  return BAD_INPUT;
+}
+
+}  // namespace tools
+}  // namespace frictional_contact_sim
