@@ -12,6 +12,9 @@ void DelassusOperator::setBlocks(const std::vector<Law>& laws)
   offsets_[0] = 0;
   for (std::size_t i = 0; i < laws.size(); ++i)
     offsets_[i + 1] = offsets_[i] + laws[i].dimension();
+  block_of_row_.resize(static_cast<std::size_t>(rows()));
+  for (int i = 0; i < blocks(); ++i)
+    std::fill(block_of_row_.begin() + offset(i), block_of_row_.begin() + offset(i + 1), i);
 }
 
 void DelassusOperator::resizeDense(const std::vector<Law>& laws)
@@ -72,9 +75,6 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
     return;
   }
   setBlocks(laws);
-  std::vector<int> block_of_row(static_cast<std::size_t>(size));
-  for (int i = 0; i < blocks(); ++i)
-    std::fill(block_of_row.begin() + offset(i), block_of_row.begin() + offset(i + 1), i);
   std::vector<std::vector<int>> block_columns(laws.size());
   for (int i = 0; i < blocks(); ++i)
   {
@@ -82,7 +82,7 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
     touched.push_back(i);
     for (int row = offset(i); row < offset(i + 1); ++row)
       for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-        touched.push_back(block_of_row[static_cast<std::size_t>(entry.col())]);
+        touched.push_back(blockOf(static_cast<int>(entry.col())));
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   }
@@ -91,7 +91,7 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
     for (int row = offset(i); row < offset(i + 1); ++row)
       for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
       {
-        const int j = block_of_row[static_cast<std::size_t>(entry.col())];
+        const int j = blockOf(static_cast<int>(entry.col()));
         block(i, j)[(row - offset(i)) + dimension(i) * (static_cast<int>(entry.col()) - offset(j))] += entry.value();
       }
 }
@@ -99,6 +99,85 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
 void DelassusOperator::assign(const Eigen::MatrixXd& matrix, const std::vector<Law>& laws)
 {
   assign(SparseRows(matrix.sparseView()), laws);
+}
+
+double DelassusOperator::storedShare(const std::vector<int>& blocks, const std::vector<int>& position, int rows) const
+{
+  double entries = 0.0;
+  for (const int i : blocks)
+    for (int p = row_begin_[static_cast<std::size_t>(i)]; p < row_begin_[static_cast<std::size_t>(i) + 1]; ++p)
+      if (position[static_cast<std::size_t>(blockOf(columns_[static_cast<std::size_t>(p)]))] >= 0)
+        entries += dimension(i);
+  return entries / (static_cast<double>(rows) * rows);
+}
+
+void DelassusOperator::assignSparseBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
+                                          const std::vector<int>& position)
+{
+  const std::size_t count = blocks.size();
+  row_begin_.resize(count + 1);
+  value_begin_.resize(count + 1);
+  diagonal_.resize(count);
+  columns_.clear();
+  values_.clear();
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    row_begin_[k] = static_cast<int>(columns_.size());
+    value_begin_[k] = static_cast<int>(values_.size());
+    const auto row = static_cast<std::size_t>(blocks[k]);
+    const int d = dimension(static_cast<int>(k));
+    const double* value = whole.values_.data() + whole.value_begin_[row];
+    for (int p = whole.row_begin_[row]; p < whole.row_begin_[row + 1]; ++p, value += d)
+    {
+      const int column = whole.columns_[static_cast<std::size_t>(p)];
+      const int j = whole.blockOf(column);
+      const int place = position[static_cast<std::size_t>(j)];
+      if (place < 0)
+        continue;
+      if (column == whole.offset(blocks[k]))
+        diagonal_[k] = static_cast<int>(values_.size());
+      columns_.push_back(offset(place) + column - whole.offset(j));
+      values_.insert(values_.end(), value, value + d);
+    }
+  }
+  row_begin_[count] = static_cast<int>(columns_.size());
+  value_begin_[count] = static_cast<int>(values_.size());
+}
+
+void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
+                                    const std::vector<int>& position, const std::vector<Law>& laws)
+{
+  const int size = rowCount(laws);
+  if (!whole.is_dense_ && size > DENSE_ROWS && whole.storedShare(blocks, position, size) < DENSE_SHARE)
+  {
+    is_dense_ = false;
+    setBlocks(laws);
+    assignSparseBlocks(whole, blocks, position);
+    return;
+  }
+  resizeDense(laws);
+  if (!whole.is_dense_)
+    dense_.setZero();
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+  {
+    const int d = dimension(static_cast<int>(k));
+    const int first = offset(static_cast<int>(k));
+    if (whole.is_dense_)
+      for (std::size_t l = 0; l < blocks.size(); ++l)
+        dense_.block(first, offset(static_cast<int>(l)), d, dimension(static_cast<int>(l))) =
+            whole.dense_.block(whole.offset(blocks[k]), whole.offset(blocks[l]), d, dimension(static_cast<int>(l)));
+    else
+      whole.visitRow(blocks[k],
+                     [&](int column, const double* value, int stride)
+                     {
+                       const int j = whole.blockOf(column);
+                       const int place = position[static_cast<std::size_t>(j)];
+                       if (place < 0)
+                         return;
+                       for (int a = 0; a < d; ++a)
+                         dense_(first + a, offset(place) + column - whole.offset(j)) = value[a * stride];
+                     });
+  }
 }
 
 void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "island_workspace.h"
 
 namespace frictional_contact_sim
 {
@@ -12,11 +13,6 @@ namespace
 {
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.
 constexpr int REFINEMENTS = 3;
-
-double secondsSince(std::chrono::steady_clock::time_point start)
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 double maxAbs(const Eigen::VectorXd& x)
 {
@@ -76,7 +72,10 @@ void StoppingOptions::validate() const
     throw std::invalid_argument("time_limit is " + std::to_string(time_limit) + ", expected >= 0");
 }
 
-Solver::Solver(std::string name) : name_(std::move(name)), reduction_(std::make_unique<DelassusReduction>())
+Solver::Solver(std::string name)
+  : name_(std::move(name))
+  , reduction_(std::make_unique<DelassusReduction>())
+  , islands_(std::make_unique<IslandWorkspace>())
 {
 }
 
@@ -88,9 +87,14 @@ void Solver::setStopping(const StoppingOptions& stopping)
   stopping_ = stopping;
 }
 
+double Solver::secondsSinceStart() const
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 bool Solver::timeIsUp() const
 {
-  return stopping_.time_limit > 0.0 && secondsSince(start_) > stopping_.time_limit;
+  return deadline_ > 0.0 && secondsSinceStart() > deadline_;
 }
 
 double Solver::residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const
@@ -105,6 +109,7 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.stopping_.tolerance = tolerance;
   method.stopping_.max_iterations = max_iterations;
   method.start_ = start_;
+  method.deadline_ = deadline_;
   method.step_lengths_ = step_lengths_;
   method.free_velocity_ = free_velocity_;
   method.doSolve(problem, result);
@@ -115,6 +120,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   const int rows = problem.W.rows();
   computeStepLengths(problem, step_lengths_);
   free_velocity_ = maxAbs(problem.q);
+  deadline_ = stopping_.time_limit;
   if (guess != nullptr)
     result.solution.r = guess->r;
   else
@@ -126,7 +132,10 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
     criterion_ = 0.0;
     return 0.0;
   }
-  doSolve(problem, result);
+  if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
+    solveIslands(problem, result);
+  else
+    doSolve(problem, result);
   if (!result.solution.r.allFinite())
   {
     result.solution.r.setZero();
@@ -156,7 +165,7 @@ void Solver::judge(double residual, double tolerance, SolverResult& result) cons
     result.message = residual <= tolerance ? "impulses run away: there may be no solution"
                                            : "the method reported convergence, the residual does not confirm it";
   }
-  result.seconds = secondsSince(start_);
+  result.seconds = secondsSinceStart();
 }
 
 void Solver::solve(const DelassusProblem& problem, const Solution* guess, SolverResult& result)

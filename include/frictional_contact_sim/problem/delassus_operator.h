@@ -47,10 +47,21 @@ public:
   void assign(const SparseRows& matrix, const std::vector<Law>& laws);
   void assign(const Eigen::MatrixXd& matrix, const std::vector<Law>& laws);
 
+  /**
+   * @brief The principal sub-matrix of some blocks of another operator, dense or sparse by its own size and density.
+   * Blocks that couple them with others are dropped. No allocation when an earlier call had the same shapes.
+   * @param blocks which, ascending; laws are theirs
+   * @param position for every block of `whole` its place in `blocks`, or -1
+   */
+  void assignBlocks(const DelassusOperator& whole, const std::vector<int>& blocks, const std::vector<int>& position,
+                    const std::vector<Law>& laws);
+
   int rows() const { return offsets_.empty() ? 0 : offsets_.back(); }
   int blocks() const { return static_cast<int>(offsets_.size()) - (offsets_.empty() ? 0 : 1); }
   /** @brief First row of block i. */
   int offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
+  /** @brief The block of a row or column. */
+  int blockOf(int row) const { return block_of_row_[static_cast<std::size_t>(row)]; }
   int dimension(int i) const { return offset(i + 1) - offset(i); }
   bool isDense() const { return is_dense_; }
   /** @brief All stored values, for checks. */
@@ -75,8 +86,12 @@ public:
 
 private:
   void setBlocks(const std::vector<Law>& laws);
+  double storedShare(const std::vector<int>& blocks, const std::vector<int>& position, int rows) const;
+  void assignSparseBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
+                          const std::vector<int>& position);
 
   bool is_dense_ = true;
+  std::vector<int> block_of_row_;  ///< rows
   std::vector<int> offsets_;  ///< blocks + 1, first row of each block
   Dense dense_;  ///< rows x rows, or empty
   std::vector<int> columns_;  ///< touched columns, block row by block row

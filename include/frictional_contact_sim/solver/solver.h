@@ -2,6 +2,13 @@
 /**
  * @file solver.h
  * @brief What every method offers: solve(problem, guess) -> SolverResult. Nothing else is public.
+ *
+ * Islands (solver/islands.h) are solved apart, each with its part of the guess, whatever the method; with one island
+ * nothing is copied. An island's tolerance is relative to its own scale, where the whole's |q| counts at least 1e-3: at
+ * least as strict as the whole's, and an island at rest stays solvable. `iterations` is then the largest of them,
+ * `tried` their union, `solver` that of the largest island that needed iterations, the status the most severe one (its
+ * message names the island's first law). One that fails leaves the others their answers. The residual is the whole
+ * problem's.
  */
 #include <chrono>
 #include <memory>
@@ -35,6 +42,7 @@ struct StoppingOptions
   int max_iterations = 1000;  ///< outer iterations of the method, >= 0
   double time_limit =
       0.0;  ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
+  bool split_islands = true;  ///< solve islands apart; false only to compare
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -53,6 +61,8 @@ struct SolverResult
 };
 
 class DelassusReduction;
+struct IslandSlot;
+struct IslandWorkspace;
 
 class Solver
 {
@@ -86,6 +96,13 @@ public:
 protected:
   /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
   virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
+  /**
+   * @brief Another object of this method with the same options, to keep the workspace of islands of another shape.
+   * @return nullptr (the default): this one does them all, and resizes its workspace when shapes alternate
+   */
+  virtual std::unique_ptr<Solver> sibling() const { return nullptr; }
+  /** @brief To be called by setOptions() of a method that overrides sibling(). */
+  void dropSiblings();
   bool timeIsUp() const;
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
@@ -102,19 +119,24 @@ protected:
 
 private:
   double solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
+  void solveIslands(const DelassusProblem& problem, SolverResult& result);
+  void solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot);
   void judge(double residual, double tolerance, SolverResult& result) const;
+  double secondsSinceStart() const;
 
   static constexpr double IMPULSE_CAP = 1e3;
 
   std::string name_;
   StoppingOptions stopping_;
   std::chrono::steady_clock::time_point start_;
+  double deadline_ = 0.0;  ///< seconds after start_ when time is up, 0 = never
   Eigen::VectorXd step_lengths_;
   double free_velocity_ = 0.0;
   double criterion_ = 0.0;  ///< stopping criterion of the last answer
   GlobalResidualData global_;
   Solution warm_;
   std::unique_ptr<DelassusReduction> reduction_;
+  std::unique_ptr<IslandWorkspace> islands_;
 };
 
 }  // namespace frictional_contact_sim

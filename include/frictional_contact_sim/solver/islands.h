@@ -1,0 +1,42 @@
+#pragma once
+/**
+ * @file islands.h
+ * @brief Islands of a local problem: the connected components of the graph of W's blocks (laws are nodes, two are
+ * joined when W_ij or W_ji has an entry that is not zero). They are problems of their own: u_i depends on no other
+ * island's r.
+ *
+ * Laws are joined by union-find, stopped as soon as one component is left: a W whose first block row couples everything
+ * costs one look at each of its blocks. Source: Tarjan (1975), union by root with path halving; any textbook.
+ */
+#include <vector>
+
+#include "frictional_contact_sim/problem/delassus_operator.h"
+
+namespace frictional_contact_sim
+{
+class Islands
+{
+public:
+  /** @brief Finds them. @return their number; when it is at most one the lists are left empty. */
+  int find(const DelassusOperator& W);
+
+  int count() const { return static_cast<int>(order_.size()); }
+  /** @brief Laws of the k-th island in ascending order; islands are ordered by rows, smallest first, then by first law.
+   */
+  void laws(int k, std::vector<int>& laws) const;
+
+private:
+  int root(int i);
+  int uniteDense(const DelassusOperator& W);
+  int uniteSparse(const DelassusOperator& W);
+  /** @brief Joins i and j. @return whether they were apart. */
+  bool unite(int i, int j);
+
+  std::vector<int> parent_;
+  std::vector<int> island_;  ///< of a law
+  std::vector<int> begin_, members_;  ///< laws, island by island
+  std::vector<int> rows_;  ///< of an island
+  std::vector<int> order_;
+};
+
+}  // namespace frictional_contact_sim

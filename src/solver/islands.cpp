@@ -1,0 +1,122 @@
+#include "frictional_contact_sim/solver/islands.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace frictional_contact_sim
+{
+namespace
+{
+bool hasEntry(const DelassusOperator::Dense& W, int row, int rows, int column, int columns)
+{
+  for (int a = 0; a < rows; ++a)
+    for (int b = 0; b < columns; ++b)
+      if (W(row + a, column + b) != 0.0)
+        return true;
+  return false;
+}
+}  // namespace
+
+int Islands::root(int i)
+{
+  auto k = static_cast<std::size_t>(i);
+  while (parent_[k] != static_cast<int>(k))
+  {
+    parent_[k] = parent_[static_cast<std::size_t>(parent_[k])];
+    k = static_cast<std::size_t>(parent_[k]);
+  }
+  return static_cast<int>(k);
+}
+
+bool Islands::unite(int i, int j)
+{
+  const int a = root(i), b = root(j);
+  if (a == b)
+    return false;
+  // The smaller index is the root: the first law of an island names it.
+  parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  return true;
+}
+
+int Islands::uniteDense(const DelassusOperator& W)
+{
+  const int blocks = W.blocks();
+  int count = blocks;
+  for (int i = 0; i < blocks && count > 1; ++i)
+    for (int j = i + 1; j < blocks; ++j)
+      if (root(i) != root(j) && (hasEntry(W.dense(), W.offset(i), W.dimension(i), W.offset(j), W.dimension(j)) ||
+                                 hasEntry(W.dense(), W.offset(j), W.dimension(j), W.offset(i), W.dimension(i))))
+      {
+        unite(i, j);
+        --count;
+      }
+  return count;
+}
+
+int Islands::uniteSparse(const DelassusOperator& W)
+{
+  int count = W.blocks();
+  for (int i = 0; i < W.blocks() && count > 1; ++i)
+    W.visitRow(i,
+               [&](int column, const double* value, int stride)
+               {
+                 const int j = W.blockOf(column);
+                 if (j == i)
+                   return;
+                 for (int a = 0; a < W.dimension(i); ++a)
+                   if (value[a * stride] != 0.0)
+                   {
+                     count -= unite(i, j) ? 1 : 0;
+                     return;
+                   }
+               });
+  return count;
+}
+
+int Islands::find(const DelassusOperator& W)
+{
+  const int blocks = W.blocks();
+  order_.clear();
+  parent_.resize(static_cast<std::size_t>(blocks));
+  std::iota(parent_.begin(), parent_.end(), 0);
+  const int count = W.isDense() ? uniteDense(W) : uniteSparse(W);
+  if (count <= 1)
+    return count;
+  const auto size = static_cast<std::size_t>(count);
+  island_.resize(static_cast<std::size_t>(blocks));
+  begin_.assign(size + 1, 0);
+  rows_.assign(size, 0);
+  int next = 0;
+  for (int i = 0; i < blocks; ++i)
+  {
+    const int first = root(i);
+    const int k = first == i ? next++ : island_[static_cast<std::size_t>(first)];
+    island_[static_cast<std::size_t>(i)] = k;
+    ++begin_[static_cast<std::size_t>(k) + 1];
+    rows_[static_cast<std::size_t>(k)] += W.dimension(i);
+  }
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  members_.resize(static_cast<std::size_t>(blocks));
+  for (int i = 0; i < blocks; ++i)
+    members_[static_cast<std::size_t>(begin_[static_cast<std::size_t>(island_[static_cast<std::size_t>(i)])]++)] = i;
+  for (std::size_t k = size; k > 0; --k)
+    begin_[k] = begin_[k - 1];
+  begin_[0] = 0;
+  order_.resize(size);
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(),
+            [this](int a, int b)
+            {
+              const int rows_a = rows_[static_cast<std::size_t>(a)], rows_b = rows_[static_cast<std::size_t>(b)];
+              return rows_a != rows_b ? rows_a < rows_b : a < b;
+            });
+  return count;
+}
+
+void Islands::laws(int k, std::vector<int>& laws) const
+{
+  const auto island = static_cast<std::size_t>(order_[static_cast<std::size_t>(k)]);
+  laws.assign(members_.begin() + begin_[island], members_.begin() + begin_[island + 1]);
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+
+#include "frictional_contact_sim/problem/residual.h"
+#include "island_workspace.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/// An island's own |q| counts in its scale, but not less than this share of the whole's: what is asked of a quiet
+/// island stays above round-off of the whole.
+constexpr double QUIET_SHARE = 1e-3;
+
+/// The more severe, the larger: what the whole reports of its islands.
+int severity(SolverStatus status)
+{
+  switch (status)
+  {
+    case SolverStatus::CONVERGED:
+      return 0;
+    case SolverStatus::NOT_RUN:
+    case SolverStatus::STAGNATED:
+      return 1;
+    case SolverStatus::MAX_ITERATIONS:
+      return 2;
+    case SolverStatus::TIME_LIMIT:
+      return 3;
+    case SolverStatus::NUMERICAL_FAILURE:
+      return 4;
+    case SolverStatus::STOPPED_BY_USER:
+      return 5;
+  }
+  return 5;
+}
+
+void clear(SolverResult& result)
+{
+  result.status = SolverStatus::NOT_RUN;
+  result.iterations = 0;
+  result.solver.clear();
+  result.tried.clear();
+  result.message.clear();
+}
+
+void merge(int first_law, const SolverResult& island, SolverResult& whole)
+{
+  whole.iterations = std::max(whole.iterations, island.iterations);
+  // Islands come smallest first: the name that stays is that of the largest one that needed a method.
+  if (!island.solver.empty())
+    whole.solver = island.solver;
+  for (const std::string& name : island.tried)
+    if (std::find(whole.tried.begin(), whole.tried.end(), name) == whole.tried.end())
+      whole.tried.push_back(name);
+  if (severity(island.status) > severity(whole.status))
+  {
+    whole.status = island.status;
+    whole.message = "island of law " + std::to_string(first_law) + ": " + island.message;
+  }
+}
+}  // namespace
+
+IslandSlot& IslandWorkspace::slot(int rows, std::size_t blocks)
+{
+  ++clock;
+  for (IslandSlot& slot : slots)
+    if (slot.rows == rows && slot.blocks == blocks)
+    {
+      slot.last_used = clock;
+      return slot;
+    }
+  if (slots.size() < MAX_SLOTS)
+    slots.emplace_back();
+  else
+    std::iter_swap(std::min_element(slots.begin(), slots.end(),
+                                    [](const IslandSlot& a, const IslandSlot& b) { return a.last_used < b.last_used; }),
+                   slots.end() - 1);
+  IslandSlot& slot = slots.back();
+  slot.rows = rows;
+  slot.blocks = blocks;
+  slot.last_used = clock;
+  return slot;
+}
+
+IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, const Eigen::VectorXd& r)
+{
+  int rows = 0;
+  for (const int i : laws)
+    rows += whole.W.dimension(i);
+  IslandSlot& slot = this->slot(rows, laws.size());
+  DelassusProblem& part = slot.problem;
+  part.laws.resize(laws.size());
+  part.q.resize(rows);
+  slot.result.solution.r.resize(rows);
+  slot.velocity.resize(rows);
+  slot.step_lengths.resize(static_cast<Eigen::Index>(laws.size()));
+  int row = 0;
+  for (std::size_t k = 0; k < laws.size(); ++k)
+  {
+    const int first = whole.W.offset(laws[k]), dimension = whole.W.dimension(laws[k]);
+    part.laws[k] = whole.laws[static_cast<std::size_t>(laws[k])];
+    part.q.segment(row, dimension) = whole.q.segment(first, dimension);
+    slot.result.solution.r.segment(row, dimension) = r.segment(first, dimension);
+    slot.velocity.segment(row, dimension) = velocity.segment(first, dimension);
+    slot.step_lengths[static_cast<Eigen::Index>(k)] = step_lengths[laws[k]];
+    row += dimension;
+  }
+  return slot;
+}
+
+void IslandWorkspace::scatter(const DelassusProblem& whole, const IslandSlot& slot, Eigen::VectorXd& r) const
+{
+  int row = 0;
+  for (const int i : laws)
+  {
+    const int dimension = whole.W.dimension(i);
+    r.segment(whole.W.offset(i), dimension) = slot.result.solution.r.segment(row, dimension);
+    row += dimension;
+  }
+}
+
+void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot)
+{
+  if (slot.method == nullptr)
+    slot.method = sibling();
+  Solver& method = slot.method != nullptr ? *slot.method : *this;
+  method.stopping_ = stopping_;
+  method.start_ = start_;
+  method.deadline_ = deadline;
+  method.free_velocity_ = std::max(slot.problem.q.lpNorm<Eigen::Infinity>(), QUIET_SHARE * whole_free_velocity);
+  method.step_lengths_ = slot.step_lengths;
+  SolverResult& result = slot.result;
+  if (method.residual(slot.problem, slot.velocity, result.solution.r) <= stopping_.tolerance)
+  {
+    result.status = SolverStatus::CONVERGED;
+    return;
+  }
+  slot.problem.W.assignBlocks(whole.W, islands_->laws, islands_->position, slot.problem.laws);
+  method.doSolve(slot.problem, result);
+  if (!result.solution.r.allFinite())
+  {
+    result.solution.r.setZero();
+    result.status = SolverStatus::NUMERICAL_FAILURE;
+    result.message = "an impulse is not finite";
+  }
+}
+
+void Solver::solveIslands(const DelassusProblem& problem, SolverResult& result)
+{
+  IslandWorkspace& work = *islands_;
+  // The velocities of the guess: an island that is already solved is not even copied, so that a scene at rest with a
+  // warm start costs one product.
+  problem.W.apply(result.solution.r, work.velocity);
+  work.velocity += problem.q;
+  work.step_lengths = step_lengths_;
+  work.position.assign(problem.laws.size(), -1);
+  const double free_velocity = free_velocity_;
+  const double whole_deadline = deadline_;
+  int rows_left = problem.W.rows();
+  result.status = SolverStatus::CONVERGED;
+  for (int k = 0; k < work.islands.count(); ++k)
+  {
+    work.islands.laws(k, work.laws);
+    IslandSlot& slot = work.gather(problem, result.solution.r);
+    clear(slot.result);
+    for (std::size_t i = 0; i < work.laws.size(); ++i)
+      work.position[static_cast<std::size_t>(work.laws[i])] = static_cast<int>(i);
+    // A time limit is shared by rows, what one island leaves goes to the later ones: a hard one does not starve them.
+    const double now = whole_deadline > 0.0 ? secondsSinceStart() : 0.0;
+    const double deadline =
+        whole_deadline > 0.0 ? now + std::max(whole_deadline - now, 0.0) * slot.rows / rows_left : 0.0;
+    solveIsland(problem, free_velocity, deadline, slot);
+    rows_left -= slot.rows;
+    for (const int i : work.laws)
+      work.position[static_cast<std::size_t>(i)] = -1;
+    work.scatter(problem, slot, result.solution.r);
+    merge(work.laws.front(), slot.result, result);
+  }
+  step_lengths_ = work.step_lengths;
+  free_velocity_ = free_velocity;
+  deadline_ = whole_deadline;
+}
+
+void Solver::dropSiblings()
+{
+  for (IslandSlot& slot : islands_->slots)
+    slot.method.reset();
+}
+
+}  // namespace frictional_contact_sim
