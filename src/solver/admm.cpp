@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -99,7 +98,7 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
   projectOntoSets(convex_, y_);
   problem.W.apply(y_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, STALL_WINDOW, result);
+  OuterLoop loop(stopping().tolerance, result, STALL_WINDOW);
   if (loop.record(residual(problem, u_, y_), y_))
     return;
   // The multiplier of the start is u~ of the guess, zero for a cold one.
@@ -132,11 +131,8 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
     u_ += problem.q;
     if (loop.record(residual(problem, u_, y_), y_))
       return;
-    if (timeIsUp())
-    {
-      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "iterations exhausted"))
       return;
-    }
     if (k % options_.update_interval != 0)
       continue;
     const double penalty = spectralPenalty(k);

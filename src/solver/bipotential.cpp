@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "frictional_contact_sim/problem/law_functions.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -136,36 +136,23 @@ void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
   alpha_ = -c_ / sigma_;
   beta_ = -z_ / sigma_;
   bool regular = factor();
-  double best = std::numeric_limits<double>::infinity();
+  OuterLoop loop(stopping().tolerance, result);
   for (result.iterations = 0;; ++result.iterations)
   {
     scaled_.unscaleImpulse(x_, r_);
     problem.W.apply(r_, u_);
     u_ += problem.q;
     const double value = residual(problem, u_, r_);
-    if (value < best)
-    {
-      best = value;
-      result.solution.r = r_;
-    }
-    if (value <= stopping().tolerance)
-    {
-      result.status = SolverStatus::CONVERGED;
+    if (loop.record(value, r_))
       return;
-    }
     if (!regular || !std::isfinite(value))
     {
       result.status = SolverStatus::NUMERICAL_FAILURE;
       result.message = regular ? "the iterates diverged" : "the matrix of the quadratic step is not positive definite";
       return;
     }
-    if (result.iterations >= stopping().max_iterations || timeIsUp())
-    {
-      const bool time = timeIsUp();
-      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
-      result.message = time ? "time limit reached" : "splitting iterations exhausted";
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "splitting iterations exhausted"))
       return;
-    }
     sweep();
     if ((result.iterations + 1) % options_.balance_interval == 0)
       regular = balance();

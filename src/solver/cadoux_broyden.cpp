@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -67,26 +67,19 @@ void CadouxBroyden::doSolve(const DelassusProblem& problem, SolverResult& result
   map_.setProblem(problem, stepLengths());
   map_.setGuess(result.solution.r);
   Eigen::VectorXd s = map_.value();
-  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
   if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
   budget.interrupted = [this] { return timeIsUp(); };
   Eigen::VectorXd old_s, old_G, best_F;
   double best = std::numeric_limits<double>::infinity();
-  while (result.iterations < stopping().max_iterations)
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
   {
-    const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
-    budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
-    map_.evaluate(s, budget);
+    map_.evaluate(s, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     ++result.iterations;
     if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
       return;
-    if (timeIsUp())
-    {
-      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
-      return;
-    }
     const Eigen::VectorXd G = map_.value() - s;
     if (G.norm() < best)
     {
@@ -107,7 +100,6 @@ void CadouxBroyden::doSolve(const DelassusProblem& problem, SolverResult& result
     old_G = G;
     s = (s - apply(G)).cwiseMax(0.0);
   }
-  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
 }
 
 }  // namespace frictional_contact_sim

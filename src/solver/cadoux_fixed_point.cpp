@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -38,19 +38,16 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
   s_ = map_.value();
   if (options_.initial_slip == InitialSlip::ZERO)
     s_.setZero();
-  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
   const double first_residual = residual(problem, map_.u(), map_.r());
   if (loop.record(first_residual, map_.r()))
     return;
   ConvexBudget budget;
   budget.interrupted = [this] { return timeIsUp(); };
   bool raised = false;
-  while (result.iterations < stopping().max_iterations)
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
   {
-    // Without friction there is one convex problem: solve it to the end.
-    const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
-    budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
-    const ConvexResult inner = map_.evaluate(s_, budget);
+    const ConvexResult inner = map_.evaluate(s_, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     ++result.iterations;
     if (!raised && map_.size() > 0 && inner.status != ConvexStatus::CONVERGED &&
         isUnqualified(map_.convexProblem(), map_.shiftedVelocity(), map_.r()))
@@ -62,16 +59,10 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
     }
     if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
       return;
-    if (timeIsUp())
-    {
-      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
-      return;
-    }
     // A cycle of F is broken by averaging: half the step after each cycle_window iterations without progress.
     const int halvings = std::min(loop.sinceProgress() / options_.cycle_window, MAX_HALVINGS);
     s_ += std::ldexp(options_.relaxation, -halvings) * (map_.value() - s_);
   }
-  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
 }
 
 }  // namespace frictional_contact_sim

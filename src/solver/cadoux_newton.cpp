@@ -4,8 +4,8 @@
 
 #include "frictional_contact_sim/math/cone.h"
 #include "frictional_contact_sim/problem/law_functions.h"
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -97,7 +97,7 @@ CadouxNewton::CadouxNewton(const CadouxNewtonOptions& options, std::unique_ptr<C
 
 void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
-  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
   if (problem.W.rows() > options_.max_rows)
   {
     loop.stop(SolverStatus::NUMERICAL_FAILURE, "");
@@ -114,22 +114,15 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
   budget.interrupted = [this] { return timeIsUp(); };
   const auto evaluate = [&](const Eigen::VectorXd& point)
   {
-    const double relative = map_.size() > 0 ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
-    budget.tolerance = relative * velocityScale(problem.q, map_.u(), map_.r(), stepLengths(), problem.W);
-    map_.evaluate(point, budget);
+    map_.evaluate(point, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     return 0.5 * (map_.value() - point).squaredNorm();
   };
   double merit = evaluate(s);
-  while (result.iterations < stopping().max_iterations)
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Newton iterations exhausted"))
   {
     ++result.iterations;
     if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
       return;
-    if (timeIsUp())
-    {
-      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
-      return;
-    }
     const Eigen::VectorXd step = cadouxNewtonStep(problem, map_, s, options_.rank_threshold);
     const Eigen::VectorXd fixed_point = map_.value();
     double length = 1.0;
@@ -151,7 +144,6 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
     }
     merit = trial_merit;
   }
-  loop.stop(SolverStatus::MAX_ITERATIONS, "Newton iterations exhausted");
 }
 
 }  // namespace frictional_contact_sim

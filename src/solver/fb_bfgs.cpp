@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -155,29 +155,15 @@ void FbBfgs::doSolve(const DelassusProblem& problem, SolverResult& result)
   Point current;
   current.merit = system_.evaluate(c_, z_, 0.0, true);
   system_.gradient(gradient_);
-  double best = std::numeric_limits<double>::infinity();
+  OuterLoop loop(stopping().tolerance, result);
   for (result.iterations = 0;; ++result.iterations)
   {
     contacts.unscaleImpulse(z_, r_);
     contacts.unscaleVelocity(c_, u_);
-    const double value = residual(problem, u_, r_);
-    if (value < best)
-    {
-      best = value;
-      result.solution.r = r_;
-    }
-    if (value <= stopping().tolerance)
-    {
-      result.status = SolverStatus::CONVERGED;
+    if (loop.record(residual(problem, u_, r_), r_))
       return;
-    }
-    if (result.iterations >= stopping().max_iterations || timeIsUp())
-    {
-      const bool time = timeIsUp();
-      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
-      result.message = time ? "time limit reached" : "quasi-Newton iterations exhausted";
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "quasi-Newton iterations exhausted"))
       return;
-    }
     bool moved = false;
     for (int attempt = 0; attempt < 2 && !moved; ++attempt)
     {

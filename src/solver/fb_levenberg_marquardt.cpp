@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -64,7 +65,8 @@ void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, SolverResult&
   contacts.scaleImpulse(result.solution.r, z_);
   contacts.velocity(z_, c_);
   const double scale = std::max(contacts.freeVelocity().norm(), std::numeric_limits<double>::min());
-  double damping = options_.first_damping, increase = 2.0, best = std::numeric_limits<double>::infinity();
+  double damping = options_.first_damping, increase = 2.0;
+  OuterLoop loop(stopping().tolerance, result);
   bool moved = true;
   double merit = 0.0;
   for (result.iterations = 0;; ++result.iterations)
@@ -73,27 +75,13 @@ void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, SolverResult&
     {
       contacts.unscaleImpulse(z_, r_);
       contacts.unscaleVelocity(c_, u_);
-      const double value = residual(problem, u_, r_);
-      if (value < best)
-      {
-        best = value;
-        result.solution.r = r_;
-      }
-      if (value <= stopping().tolerance)
-      {
-        result.status = SolverStatus::CONVERGED;
+      if (loop.record(residual(problem, u_, r_), r_))
         return;
-      }
       merit = system_.evaluate(c_, z_, 0.0, true);
       steps_.assemble(system_);
     }
-    if (result.iterations >= stopping().max_iterations || timeIsUp())
-    {
-      const bool time = timeIsUp();
-      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
-      result.message = time ? "time limit reached" : "Levenberg-Marquardt iterations exhausted";
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Levenberg-Marquardt iterations exhausted"))
       return;
-    }
     if (damping > LARGEST_DAMPING || !std::isfinite(merit))
     {
       result.status = std::isfinite(merit) ? SolverStatus::STAGNATED : SolverStatus::NUMERICAL_FAILURE;

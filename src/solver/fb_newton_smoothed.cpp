@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -118,7 +118,7 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& res
   start_ = z_;
   const double largest = options_.first_smoothing * contacts.freeVelocity().lpNorm<Eigen::Infinity>();
   const double root_rows = std::sqrt(static_cast<double>(system_.rows()));
-  double best = std::numeric_limits<double>::infinity();
+  OuterLoop loop(stopping().tolerance, result);
   alpha_ = largest;
   inner_ = restarts_ = 0;
   stuck_ = false;
@@ -127,24 +127,10 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& res
     contacts.velocity(z_, c_);
     contacts.unscaleImpulse(z_, r_);
     contacts.unscaleVelocity(c_, u_);
-    const double value = residual(problem, u_, r_);
-    if (value < best)
-    {
-      best = value;
-      result.solution.r = r_;
-    }
-    if (value <= stopping().tolerance)
-    {
-      result.status = SolverStatus::CONVERGED;
+    if (loop.record(residual(problem, u_, r_), r_))
       return;
-    }
-    if (result.iterations >= stopping().max_iterations || timeIsUp())
-    {
-      const bool time = timeIsUp();
-      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
-      result.message = time ? "time limit reached" : "Newton iterations exhausted";
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Newton iterations exhausted"))
       return;
-    }
     double merit = system_.evaluate(c_, z_, alpha_, true);
     if (!nextSmoothing(largest, root_rows, merit) || !std::isfinite(merit))
     {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -61,35 +62,26 @@ void FixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
   scaled_.set(problem, stepLengths(), metric_);
   scaled_.scaleImpulse(result.solution.r, z_);
   double theta = options_.first_step;
-  double best = evaluate(problem, z_, field_);
-  for (result.iterations = 0; best > stopping().tolerance; ++result.iterations)
+  OuterLoop loop(stopping().tolerance, result);
+  if (loop.record(evaluate(problem, z_, field_), result.solution.r))
+    return;
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "fixed-point iterations exhausted"))
   {
-    if (result.iterations >= stopping().max_iterations || timeIsUp())
-    {
-      const bool time = timeIsUp();
-      result.status = time ? SolverStatus::TIME_LIMIT : SolverStatus::MAX_ITERATIONS;
-      result.message = time ? "time limit reached" : "fixed-point iterations exhausted";
-      return;
-    }
     advance(theta);
+    ++result.iterations;
     const double value = evaluate(problem, trial_, trial_field_);
     if (!std::isfinite(value))
     {
-      result.status = SolverStatus::NUMERICAL_FAILURE;
-      result.message = "the fixed-point iterations diverged";
+      loop.stop(SolverStatus::NUMERICAL_FAILURE, "the fixed-point iterations diverged");
       return;
     }
-    if (value < best)
-    {
-      best = value;
-      result.solution.r = r_;
-    }
+    if (loop.record(value, r_))
+      return;
     const double change = (trial_ - z_).norm();
     const double ratio = change > 0.0 ? theta * (trial_field_ - field_).norm() / change : 0.0;
     if (change == 0.0 || theta < SMALLEST_STEP || theta > LARGEST_STEP)
     {
-      result.status = SolverStatus::STAGNATED;
-      result.message = change == 0.0 ? "the iterate no longer changes" : "no step length leads on";
+      loop.stop(SolverStatus::STAGNATED, change == 0.0 ? "the iterate no longer changes" : "no step length leads on");
       return;
     }
     if (options_.adapt && ratio > options_.largest_ratio)
@@ -102,7 +94,6 @@ void FixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
     if (options_.adapt && ratio < options_.smallest_ratio)
       theta /= options_.shrink;
   }
-  result.status = SolverStatus::CONVERGED;
 }
 
 }  // namespace frictional_contact_sim

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/slip_map.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -48,27 +48,21 @@ void Haslinger::doSolve(const DelassusProblem& problem, SolverResult& result)
   projectOntoSets(convex_, r_);
   problem.W.apply(r_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
   if (loop.record(residual(problem, u_, r_), r_))
     return;
   ConvexBudget budget;
   budget.interrupted = [this] { return timeIsUp(); };
-  while (result.iterations < stopping().max_iterations)
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
   {
-    const double relative = frictional ? loop.innerTolerance(options_.inner_accuracy) : 0.1 * stopping().tolerance;
-    budget.tolerance = relative * velocityScale(problem.q, u_, r_, stepLengths(), problem.W);
+    budget.tolerance = loop.innerTolerance(options_.inner_accuracy, frictional) *
+                       velocityScale(problem.q, u_, r_, stepLengths(), problem.W);
     inner_->solve(convex_, budget, r_, u_);
     ++result.iterations;
     if (loop.record(residual(problem, u_, r_), r_))
       return;
-    if (timeIsUp())
-    {
-      loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
-      return;
-    }
     updateThresholds(problem, options_.relaxation);
   }
-  loop.stop(SolverStatus::MAX_ITERATIONS, "outer iterations exhausted");
 }
 
 }  // namespace frictional_contact_sim

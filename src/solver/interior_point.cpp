@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
 #include "frictional_contact_sim/solver/convex/slip_map.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -53,7 +53,7 @@ bool InteriorPoint::run(const DelassusProblem& problem, double shift, double sli
   u_ += convex_.c - problem.q;
   iteration_.start(convex_, guess_, u_, shift);
   double centring = 0.0;
-  while (result.iterations < stopping().max_iterations)
+  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "iterations exhausted"))
   {
     const double length = iteration_.step(convex_, centring);
     if (length < SHORTEST_STEP)
@@ -63,8 +63,6 @@ bool InteriorPoint::run(const DelassusProblem& problem, double shift, double sli
     const double value = residual(problem, u_, iteration_.r());
     if (loop.record(value, iteration_.r()))
       return true;
-    if (timeIsUp())
-      return loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
     if (frictional_)
     {
       const double error = value * velocityScale(problem.q, u_, iteration_.r(), stepLengths(), problem.W);
@@ -72,7 +70,7 @@ bool InteriorPoint::run(const DelassusProblem& problem, double shift, double sli
     }
     updateSlip(problem);
   }
-  return loop.stop(SolverStatus::MAX_ITERATIONS, "iterations exhausted");
+  return true;
 }
 
 void InteriorPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
@@ -84,7 +82,7 @@ void InteriorPoint::doSolve(const DelassusProblem& problem, SolverResult& result
   projectOntoSets(convex_, guess_);
   problem.W.apply(guess_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, options_.stall_window, result);
+  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
   const double first = residual(problem, u_, guess_);
   if (loop.record(first, guess_))
     return;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -232,14 +232,11 @@ void LcpLemke::doSolve(const DelassusProblem& problem, SolverResult& result)
   const Eigen::VectorXd scale = stepLengths().cwiseSqrt();
   LcpOptions pivoting = options_.pivoting;
   pivoting.interrupted = [this] { return timeIsUp(); };
-  OuterLoop loop(stopping().tolerance, options_.alignments + 2, result);
+  OuterLoop loop(stopping().tolerance, result, options_.alignments + 2);
   for (int k = 0; k <= (spatial ? options_.alignments : 0); ++k)
   {
-    if (result.iterations >= stopping().max_iterations)
-    {
-      loop.stop(SolverStatus::MAX_ITERATIONS, "solves of the LCP exhausted");
+    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "solves of the LCP exhausted"))
       return;
-    }
     const ContactLcp lcp = makeContactLcp(problem, options_.facets, angles_, scale);
     const LcpResult answer = options_.method == LcpMethod::LEMKE ? solveLemke(lcp.A, lcp.b, pivoting)
                                                                  : solvePrincipalPivoting(lcp.A, lcp.b, pivoting);

@@ -35,4 +35,22 @@ void checkLcp(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptio
 /** @brief x from the indices that are basic (y there is zero), by LU; sets x, y and a NUMERICAL_FAILURE. */
 void solveBasis(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const std::vector<bool>& basic, LcpResult& result);
 
+/** @brief A pivoting method from its check to its answer; Path has follow(max_pivots, pivots) and basic(). */
+template <typename Path>
+LcpResult followPath(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options)
+{
+  checkLcp(M, b, options);
+  LcpResult result;
+  if (b.size() == 0)
+  {
+    result.status = LcpStatus::SOLVED;
+    return result;
+  }
+  Path path(M, b, options);
+  const int size = static_cast<int>(b.size());
+  result.status = path.follow(options.max_pivots > 0 ? options.max_pivots : 20 * size + 100, result.pivots);
+  solveBasis(M, b, path.basic(), result);
+  return result;
+}
+
 }  // namespace frictional_contact_sim

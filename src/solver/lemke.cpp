@@ -24,7 +24,7 @@ class LemkePath
 public:
   LemkePath(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options);
   LcpStatus follow(int max_pivots, int& pivots);
-  std::vector<bool> basicX() const;
+  std::vector<bool> basic() const;
 
 private:
   void pivot(int row, int column);
@@ -159,12 +159,12 @@ LcpStatus LemkePath::follow(int max_pivots, int& pivots)
   return LcpStatus::MAX_PIVOTS;
 }
 
-std::vector<bool> LemkePath::basicX() const
+std::vector<bool> LemkePath::basic() const
 {
-  std::vector<bool> basic(static_cast<std::size_t>(n_));
-  for (std::size_t i = 0; i < basic.size(); ++i)
-    basic[i] = row_of_[i] >= 0;
-  return basic;
+  std::vector<bool> result(static_cast<std::size_t>(n_));
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = row_of_[i] >= 0;
+  return result;
 }
 }  // namespace
 
@@ -236,18 +236,7 @@ void solveBasis(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const std::v
 
 LcpResult solveLemke(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options)
 {
-  checkLcp(M, b, options);
-  LcpResult result;
-  if (b.size() == 0)
-  {
-    result.status = LcpStatus::SOLVED;
-    return result;
-  }
-  LemkePath path(M, b, options);
-  const int size = static_cast<int>(b.size());
-  result.status = path.follow(options.max_pivots > 0 ? options.max_pivots : 20 * size + 100, result.pivots);
-  solveBasis(M, b, path.basicX(), result);
-  return result;
+  return followPath<LemkePath>(M, b, options);
 }
 
 }  // namespace frictional_contact_sim

@@ -1,4 +1,4 @@
-#include "frictional_contact_sim/solver/convex/outer_loop.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 
 #include <algorithm>
 
@@ -38,9 +38,16 @@ void OuterLoop::restart()
   since_ = 0;
 }
 
-double OuterLoop::innerTolerance(double accuracy) const
+bool OuterLoop::outOfBudget(int max_iterations, bool time_is_up, const char* exhausted)
 {
-  return std::clamp(accuracy * last_, 0.1 * tolerance_, accuracy);
+  if (time_is_up)
+    return stop(SolverStatus::TIME_LIMIT, "time limit reached");
+  return result_.iterations >= max_iterations && stop(SolverStatus::MAX_ITERATIONS, exhausted);
+}
+
+double OuterLoop::innerTolerance(double accuracy, bool frictional) const
+{
+  return frictional ? std::clamp(accuracy * last_, 0.1 * tolerance_, accuracy) : 0.1 * tolerance_;
 }
 
 }  // namespace frictional_contact_sim

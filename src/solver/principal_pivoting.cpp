@@ -18,7 +18,7 @@ public:
     tolerance_ = options.pivot_tolerance * M.lpNorm<Eigen::Infinity>();
   }
   LcpStatus follow(int max_pivots, int& pivots);
-  const std::vector<bool>& swapped() const { return swapped_; }
+  const std::vector<bool>& basic() const { return swapped_; }
 
 private:
   void pivot(Eigen::Index row, Eigen::Index column) { exchange(T_, b_, row, column, work_column_, work_row_); }
@@ -109,18 +109,7 @@ LcpStatus PrincipalPath::follow(int max_pivots, int& pivots)
 
 LcpResult solvePrincipalPivoting(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options)
 {
-  checkLcp(M, b, options);
-  LcpResult result;
-  if (b.size() == 0)
-  {
-    result.status = LcpStatus::SOLVED;
-    return result;
-  }
-  PrincipalPath path(M, b, options);
-  const int size = static_cast<int>(b.size());
-  result.status = path.follow(options.max_pivots > 0 ? options.max_pivots : 20 * size + 100, result.pivots);
-  solveBasis(M, b, path.swapped(), result);
-  return result;
+  return followPath<PrincipalPath>(M, b, options);
 }
 
 }  // namespace frictional_contact_sim

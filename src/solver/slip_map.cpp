@@ -77,4 +77,10 @@ ConvexResult SlipMap::evaluate(const Eigen::VectorXd& s, const ConvexBudget& bud
   return result;
 }
 
+ConvexResult SlipMap::evaluate(const Eigen::VectorXd& s, double relative_tolerance, ConvexBudget& budget)
+{
+  budget.tolerance = relative_tolerance * velocityScale(problem_->q, u_, r_, convex_.step_lengths, problem_->W);
+  return evaluate(s, static_cast<const ConvexBudget&>(budget));
+}
+
 }  // namespace frictional_contact_sim

@@ -40,6 +40,8 @@ public:
   void setGuess(const Eigen::VectorXd& r);
   /** @brief Evaluates F at s from the present r. */
   ConvexResult evaluate(const Eigen::VectorXd& s, const ConvexBudget& budget);
+  /** @brief The same, to a tolerance relative to velocityScale() at the present point; sets budget.tolerance. */
+  ConvexResult evaluate(const Eigen::VectorXd& s, double relative_tolerance, ConvexBudget& budget);
 
   int size() const { return static_cast<int>(contacts_.size()); }
   /** @brief Law index of entry k of s. */

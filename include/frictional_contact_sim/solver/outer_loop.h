@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file outer_loop.h
- * @brief What the outer loops around convex problems share: the best iterate, the stall rule, the inner tolerance.
+ * @brief What the loops of the methods share: the best iterate, the stopping rules, the tolerance of inner problems.
  */
 #include <Eigen/Core>
 #include <limits>
@@ -13,9 +13,9 @@ namespace frictional_contact_sim
 class OuterLoop
 {
 public:
-  /** @param window iterations without the best residual falling by a tenth that count as a stall */
-  OuterLoop(double tolerance, int window, SolverResult& result)
-    : tolerance_(tolerance), window_(window), result_(result)
+  /** @param window iterations without the best residual falling by a tenth that count as a stall; no rule by default */
+  OuterLoop(double tolerance, SolverResult& result, int window = std::numeric_limits<int>::max())
+    : tolerance_(tolerance), result_(result), window_(window)
   {
   }
 
@@ -29,17 +29,23 @@ public:
   /** @brief Ends with the given status. The best iterate is kept. */
   bool stop(SolverStatus status, const char* message);
 
-  /** @brief Relative tolerance of the next inner problem: accuracy times the last residual, not below tolerance / 10.
+  /** @brief True when the iterations or the time are used up, with status and message (`exhausted`, or the time) set.
    */
-  double innerTolerance(double accuracy) const;
+  bool outOfBudget(int max_iterations, bool time_is_up, const char* exhausted);
+
+  /**
+   * @brief Relative tolerance of the next inner problem: accuracy times the last residual, not below tolerance / 10.
+   * Without friction the inner problem is the whole problem: to the end.
+   */
+  double innerTolerance(double accuracy, bool frictional) const;
   double best() const { return best_; }
   /** @brief Iterations since the residual last fell by a tenth. */
   int sinceProgress() const { return since_; }
 
 private:
   double tolerance_;
-  int window_;
   SolverResult& result_;
+  int window_;
   double last_ = 1.0;
   double run_best_ = std::numeric_limits<double>::infinity();  ///< since the last restart
   double best_ = std::numeric_limits<double>::infinity();
