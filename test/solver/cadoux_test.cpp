@@ -16,6 +16,7 @@
 #include "frictional_contact_sim/solver/interior_point.h"
 #include "method_test_support.h"
 #include "support/hand_problems.h"
+#include "support/thesis_problems.h"
 
 using namespace frictional_contact_sim;
 using namespace frictional_contact_sim::test_support;
@@ -40,21 +41,6 @@ std::unique_ptr<ConvexSolver> exactInner()
   return std::make_unique<ProjectedGradient>();
 }
 
-/// Cadoux (2009), example 3.21, normal first: m = 2, M = I, H = [1 0; 1 0; 0 1], f = (0, 1), w = 0, mu = 1.
-IncrementalProblem example321()
-{
-  IncrementalProblem problem;
-  problem.M = sparse(Eigen::MatrixXd::Identity(2, 2));
-  problem.f = Eigen::Vector2d(0, 1);
-  Eigen::MatrixXd H(3, 2);
-  H << 1, 0, 1, 0, 0, 1;
-  problem.H = sparse(H);
-  problem.w.setZero(3);
-  problem.laws = {{LawType::COULOMB_3D, 1.0}};
-  problem.G.resize(0, 2);
-  problem.b.resize(0);
-  return problem;
-}
 
 template <typename Method>
 Eigen::VectorXd impulseAfter(Method& solver, int iterations)

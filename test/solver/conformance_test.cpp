@@ -8,8 +8,8 @@
 
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "judgement.h"
 #include "support/hand_problems.h"
-#include "support/validator.h"
 
 using namespace frictional_contact_sim;
 using namespace frictional_contact_sim::test_support;
@@ -17,47 +17,12 @@ namespace fs = std::filesystem;
 
 namespace
 {
-constexpr double TOLERANCE = 1e-8;
-/// Two evaluations of one residual agree but for round-off, magnified by the condition of the problem.
-constexpr double CONFIRMED = 1.001 * TOLERANCE;
 /// The methods every small problem must be solved by.
 const std::vector<std::string> MUST_CONVERGE = {"portfolio", "ac_newton", "gauss_seidel"};
-
-StoppingOptions budget(int iterations, double seconds)
-{
-  StoppingOptions options;
-  options.tolerance = TOLERANCE;
-  options.max_iterations = iterations;
-  options.time_limit = seconds;
-  return options;
-}
 
 bool mustConverge(const std::string& name)
 {
   return std::find(MUST_CONVERGE.begin(), MUST_CONVERGE.end(), name) != MUST_CONVERGE.end();
-}
-
-void expectConfirmed(const IncrementalProblem& problem, const SolverResult& result, const std::string& where)
-{
-  EXPECT_TRUE(result.solution.r.allFinite() && result.solution.v.allFinite()) << where;
-  if (result.status == SolverStatus::CONVERGED)
-  {
-    EXPECT_LE(validateAnswer(problem, result.solution.v, result.solution.r, result.solution.lambda).worst(), CONFIRMED)
-        << where;
-  }
-  else
-  {
-    EXPECT_FALSE(result.message.empty()) << where;
-  }
-}
-
-void expectConfirmed(const DelassusProblem& problem, const SolverResult& result, const std::string& where)
-{
-  EXPECT_TRUE(result.solution.r.allFinite()) << where;
-  if (result.status == SolverStatus::CONVERGED)
-  {
-    EXPECT_LE(validateAnswer(problem, result.solution.r).law, CONFIRMED) << where;
-  }
 }
 
 struct NamedProblem

@@ -52,8 +52,8 @@ double largest(const VectorXd& x)
   return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0;
 }
 
-double lawVerdict(const std::vector<Law>& laws, const MatrixXd& W, const VectorXd& q, const VectorXd& u,
-                  const VectorXd& r)
+void judgeLaws(const std::vector<Law>& laws, const MatrixXd& W, const VectorXd& q, const VectorXd& u, const VectorXd& r,
+               Verdict& verdict)
 {
   std::vector<double> lambda;
   int row = 0;
@@ -67,18 +67,19 @@ double lawVerdict(const std::vector<Law>& laws, const MatrixXd& W, const VectorX
     row += d;
   }
   const double biggest = lambda.empty() ? 0.0 : *std::max_element(lambda.begin(), lambda.end());
-  double worst = 0.0;
-  double scale = std::max({largest(q), largest(u), 1e-12});
+  double worst = 0.0, impulse = 0.0;
+  const double velocity = std::max({largest(q), largest(u), 1e-12});
   row = 0;
   for (std::size_t i = 0; i < laws.size(); ++i)
   {
     const int d = laws[i].dimension();
     const double rho = 1.0 / (lambda[i] > 0.0 ? lambda[i] : biggest > 0.0 ? biggest : 1.0);
     worst = std::max(worst, lawError(laws[i], u.segment(row, d), r.segment(row, d), rho).norm());
-    scale = std::max(scale, r.segment(row, d).norm() / rho);
+    impulse = std::max(impulse, r.segment(row, d).norm() / rho);
     row += d;
   }
-  return worst / scale;
+  verdict.law = worst / std::max(velocity, impulse);
+  verdict.runaway = impulse / velocity;
 }
 }  // namespace
 
@@ -105,7 +106,7 @@ Verdict validateAnswer(const IncrementalProblem& problem, const VectorXd& v, con
   }
   if (problem.b.size() > 0)
     joint = G.transpose() * lambda;
-  verdict.law = lawVerdict(problem.laws, W, q, u, r);
+  judgeLaws(problem.laws, W, q, u, r, verdict);
   const VectorXd momentum = M * v;
   const double scale = std::max({largest(momentum), largest(problem.f), largest(contact), largest(joint)});
   const double defect = largest(momentum + problem.f - contact - joint);
@@ -124,7 +125,7 @@ Verdict validateAnswer(const DelassusProblem& problem, const VectorXd& r)
   const MatrixXd W = problem.W.toDense();
   Verdict verdict;
   if (r.size() > 0)
-    verdict.law = lawVerdict(problem.laws, W, problem.q, W * r + problem.q, r);
+    judgeLaws(problem.laws, W, problem.q, W * r + problem.q, r, verdict);
   return verdict;
 }
 
