@@ -1,0 +1,261 @@
+/**
+ * @file compare_solvers.cpp
+ * @brief Command compare_solvers: solves every file of a list with every solver of a list and writes one CSV row each.
+ * Exit 0 all converged, 1 a solve did not, 2 bad input (a bad file among good ones: its row says BAD_INPUT, the others
+ * are done).
+ */
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include "frictional_contact_sim/math/contact_functions.h"
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/fclib.h"
+#include "frictional_contact_sim/problem/residual.h"
+#include "frictional_contact_sim/solver/registry.h"
+#include "tool_support.h"
+
+namespace
+{
+using namespace frictional_contact_sim;
+namespace fs = std::filesystem;
+
+struct Arguments
+{
+  std::vector<std::string> inputs;
+  std::vector<std::string> solvers;
+  std::string output;
+  StoppingOptions stopping;
+  int repeat = 1;
+};
+
+volatile std::sig_atomic_t interrupted = 0;  ///< Ctrl-C: the rows so far stay, the rest is left
+
+constexpr const char* HEADER =
+    "file,kind,dimension,contacts,solver,status,iterations,residual,siconos_error,natural_map_1q,ac_criterion,"
+    "cpu_seconds,wall_seconds,tried,message";
+
+/** A field of RFC 4180: quoted when it needs to be. */
+std::string field(const std::string& text)
+{
+  if (text.find_first_of(",\"\n\r") == std::string::npos)
+    return text;
+  std::string result = "\"";
+  for (const char character : text)
+  {
+    if (character == '"')
+      result += '"';
+    result += character == '\n' || character == '\r' ? ' ' : character;
+  }
+  return result + '"';
+}
+
+std::string number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names)
+{
+  std::string result;
+  for (const std::string& name : names)
+    result += (result.empty() ? "" : "+") + name;
+  return result;
+}
+
+double median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+template <int D>
+double alartCurnierSquare(double mu, const double* u, const double* r)
+{
+  return alartCurnier<D>(Eigen::Map<const Vector<D>>(u), Eigen::Map<const Vector<D>>(r), mu, 1.0, 1.0,
+                         RadiusRule::IMPULSE)
+      .squaredNorm();
+}
+
+/** Cadoux (2009), (5.1): |f_AC(u, r)|^2/(2 n d) with rho = 1, over the Coulomb contacts; 0 without any. */
+double thesisCriterion(const std::vector<Law>& laws, const Solution& solution)
+{
+  double sum = 0.0;
+  int rows = 0;
+  int row = 0;
+  for (const Law& law : laws)
+  {
+    const double* u = solution.u.data() + row;
+    const double* r = solution.r.data() + row;
+    if (law.type == LawType::COULOMB_3D)
+      sum += alartCurnierSquare<3>(law.coefficient, u, r);
+    else if (law.type == LawType::COULOMB_2D)
+      sum += alartCurnierSquare<2>(law.coefficient, u, r);
+    rows += law.isCoulomb() ? law.dimension() : 0;
+    row += law.dimension();
+  }
+  return rows > 0 ? sum / (2.0 * rows) : 0.0;
+}
+
+std::vector<std::string> listFiles(const std::vector<std::string>& inputs)
+{
+  std::vector<std::string> files;
+  for (const std::string& input : inputs)
+  {
+    if (!fs::is_directory(input))
+    {
+      files.push_back(input);
+      continue;
+    }
+    std::vector<std::string> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(input))
+      if (entry.path().extension() == ".hdf5")
+        found.push_back(entry.path().string());
+    if (found.empty())
+      throw std::invalid_argument("folder " + input + " has no file ending in .hdf5");
+    std::sort(found.begin(), found.end());
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  return files;
+}
+
+/** Solves, writes rows and remembers the worst that happened. */
+class Comparison
+{
+public:
+  Comparison(const Arguments& arguments, std::ostream& output) : arguments_(arguments), output_(output)
+  {
+    for (const std::string& name : arguments.solvers)
+    {
+      solvers_.push_back(createSolver(name));
+      solvers_.back()->setStopping(arguments.stopping);
+    }
+  }
+
+  int run(const std::vector<std::string>& files)
+  {
+    tools::ProgressBar progress(static_cast<long>(files.size() * solvers_.size()));
+    output_ << HEADER << std::endl;
+    long done = 0;
+    for (const std::string& file : files)
+    {
+      done += static_cast<long>(solvers_.size());
+      try
+      {
+        const FclibProblem problem = readFclib(file);
+        const Eigen::VectorXd q = problem.kind == FclibKind::LOCAL ? problem.local.q : reduce(problem.global).q;
+        long current = done - static_cast<long>(solvers_.size());
+        for (const std::unique_ptr<Solver>& solver : solvers_)
+        {
+          if (interrupted != 0)
+            throw std::runtime_error("interrupted");
+          solveOne(file, problem, q, *solver);
+          progress.update(++current);
+        }
+      }
+      catch (const std::exception& error)
+      {
+        progress.clear();
+        std::cerr << "compare_solvers: " << error.what() << '\n';
+        if (interrupted != 0)
+          return tools::NOT_CONVERGED;
+        output_ << field(file) << ",,,,,BAD_INPUT,,,,,,,,," << field(error.what()) << std::endl;
+        exit_code_ = tools::BAD_INPUT;
+      }
+      progress.update(done);
+    }
+    return exit_code_;
+  }
+
+private:
+  void solveOne(const std::string& file, const FclibProblem& problem, const Eigen::VectorXd& q, Solver& solver)
+  {
+    const bool local = problem.kind == FclibKind::LOCAL;
+    SolverResult result;
+    std::vector<double> cpu, wall;
+    output_ << field(file) << ',' << (local ? "local" : "global") << ',' << problem.dimension << ',' << problem.contacts
+            << ',' << solver.name() << ',';
+    try
+    {
+      for (int k = 0; k < arguments_.repeat; ++k)
+      {
+        const double start = tools::threadSeconds();
+        if (local)
+          solver.solve(problem.local, nullptr, result);
+        else
+          solver.solve(problem.global, nullptr, result);
+        cpu.push_back(tools::threadSeconds() - start);
+        wall.push_back(result.seconds);
+      }
+    }
+    catch (const std::exception& error)
+    {
+      // The file was good: it is this method that cannot take the problem (or not this size).
+      output_ << "REFUSED,,,,,,,,," << field(error.what()) << std::endl;
+      exit_code_ = std::max(exit_code_, tools::NOT_CONVERGED);
+      return;
+    }
+    const std::vector<Law>& laws = local ? problem.local.laws : problem.global.laws;
+    const Diagnostics diagnostics = diagnose(laws, q, result.solution.u, result.solution.r);
+    output_ << toString(result.status) << ',' << result.iterations << ',' << number(result.residual) << ','
+            << number(diagnostics.siconos_error) << ',' << number(diagnostics.natural_map_1q) << ','
+            << number(thesisCriterion(laws, result.solution)) << ',' << number(median(cpu)) << ','
+            << number(median(wall)) << ',' << field(joined(result.tried)) << ',' << field(result.message) << std::endl;
+    if (result.status != SolverStatus::CONVERGED)
+      exit_code_ = std::max(exit_code_, tools::NOT_CONVERGED);
+  }
+
+  const Arguments& arguments_;
+  std::ostream& output_;
+  std::vector<std::unique_ptr<Solver>> solvers_;
+  int exit_code_ = tools::SUCCESS;
+};
+
+int run(Arguments& arguments)
+{
+  if (arguments.solvers.empty())
+    for (const SolverEntry& entry : solverRegistry())
+      arguments.solvers.emplace_back(entry.name);
+  const std::vector<std::string> files = listFiles(arguments.inputs);
+  std::ofstream file;
+  if (!arguments.output.empty())
+  {
+    file.open(arguments.output);
+    if (!file)
+      throw std::runtime_error("cannot write " + arguments.output);
+  }
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  return Comparison(arguments, arguments.output.empty() ? std::cout : file).run(files);
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  Arguments arguments;
+  arguments.stopping.time_limit = 10.0;
+  CLI::App app(
+      "Solves FCLib problems with several methods, cold start each, and writes one CSV row a solve. A method that\n"
+      "cannot take a problem gets status REFUSED, a file that cannot be read one row BAD_INPUT; the rest goes on.\n"
+      "Exit 0: all converged, 1: a solve did not, 2: bad input.",
+      "compare_solvers");
+  app.add_option("FILES", arguments.inputs, "FCLib files, or folders of *.hdf5; never changed")->required();
+  app.add_option("--solvers", arguments.solvers, "names separated by commas (default: all; see fclib_solve)")
+      ->delimiter(',');
+  app.add_option("--tolerance", arguments.stopping.tolerance, "on the residual E [-]")->capture_default_str();
+  app.add_option("--max-iterations", arguments.stopping.max_iterations, "iterations of a method")
+      ->capture_default_str();
+  app.add_option("--time-limit", arguments.stopping.time_limit, "wall clock of a solve [s], 0 = none")
+      ->capture_default_str();
+  app.add_option("--repeat", arguments.repeat, "cold solves; both times are their medians")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--output", arguments.output, "CSV file (default: standard output)");
+  return frictional_contact_sim::tools::runTool(app, argc, argv, [&] { return run(arguments); });
+}
