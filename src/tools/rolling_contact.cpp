@@ -1,4 +1,158 @@
-int main()
+// rolling_contact FILE.yaml: solves a rolling contact case, prints a summary, writes CSV files and creep curves.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+
+#include "frictional_contact_sim/rolling/closed_forms.h"
+#include "frictional_contact_sim/rolling/rolling_case.h"
+
+namespace fcs = frictional_contact_sim;
+
+namespace
 {
-  return 0;
+volatile std::sig_atomic_t interrupted = 0;
+
+struct Options
+{
+  std::string file;
+  std::string output;
+  int nodes = 0;
+};
+
+/** A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
+class Progress
+{
+public:
+  Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) != 0) {}
+  ~Progress()
+  {
+    if (last_ >= 0)
+      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r' << std::flush;
+  }
+  void update(double share)
+  {
+    const auto percent = static_cast<long>(100.0 * share);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (!terminal_ || seconds < 2.0 || percent == last_)
+      return;
+    last_ = percent;
+    const auto filled = static_cast<std::size_t>(percent * WIDTH / 100);
+    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
+              << std::flush;
+  }
+
+private:
+  static constexpr long WIDTH = 40;
+  std::chrono::steady_clock::time_point start_;
+  bool terminal_;
+  long last_ = -1;
+};
+
+void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
+{
+  const fcs::FrictionalContact& contact = run.contact;
+  const fcs::HertzLine hertz = fcs::hertzLine(contact.P, study.radius, run.materials.reducedModulus());
+  std::cout << "friction " << run.friction << ", lower body ";
+  if (run.materials.lower_is_rigid)
+    std::cout << "rigid";
+  else
+    std::cout << "E = " << run.materials.lower.young_modulus << " Pa";
+  std::cout << ", beta " << run.materials.dundursBeta() << ", " << run.gap.size() << " contact nodes\n"
+            << "  P " << contact.P << " N/m   Q " << contact.Q << " N/m";
+  if (run.friction > 0.0 && contact.P > 0.0)
+    std::cout << "   |Q|/(mu P) " << std::abs(contact.Q) / (run.friction * contact.P);
+  std::cout << "\n  approach " << run.approach << " m   shift " << run.shift << " m\n  contact width "
+            << run.contactWidth() << " m (Hertz " << 2.0 * hertz.half_width << ")   stick width " << run.stickWidth()
+            << " m   peak pressure " << contact.r_N.maxCoeff() << " Pa (Hertz " << hertz.peak_pressure << ")\n"
+            << "  elastic energy " << run.elasticEnergy() << " J/m   |F - F'|/|F| " << run.asymmetry
+            << "\n  LCP: residual " << contact.residual << "   pivots " << contact.pivots << "   CPU "
+            << run.flexibility_seconds << " s flexibility, " << run.contact_seconds << " s contact"
+            << (run.converged ? "\n" : "\n  NOT CONVERGED\n");
+  if (study.motion == fcs::Motion::TRANSIENT)
+    std::cout << "  " << run.history.size() << " steps of one node\n";
+  if (run.curve)
+    std::cout << "  creep curve: full slip at creepage " << run.curve->creepage.back() << ", free rolling at "
+              << run.curve->free_creepage << ", other direction differs by " << run.curve->other_direction
+              << ", worst residual " << run.curve->worst_residual << '\n';
+}
+
+int run(const Options& options)
+{
+  fcs::RollingCase study = fcs::loadRollingCase(options.file);
+  if (options.nodes > 0)
+    study.nodes = options.nodes;
+  std::vector<fcs::RollingRun> runs;
+  {
+    Progress progress;
+    fcs::RunHooks hooks;
+    hooks.progress = [&progress](double share) { progress.update(share); };
+    hooks.interrupted = []() { return interrupted != 0; };
+    runs = fcs::runRollingCase(study, hooks);
+  }
+  bool converged = interrupted == 0;
+  for (const fcs::RollingRun& one : runs)
+  {
+    print(study, one);
+    converged = converged && one.converged;
+  }
+  if (!options.output.empty())
+  {
+    std::filesystem::create_directories(options.output);
+    for (const std::string& path : fcs::writeRollingFiles(study, runs, options.output))
+      std::cout << "wrote " << path << '\n';
+  }
+  if (interrupted != 0)
+    std::cerr << "rolling_contact: interrupted after " << runs.size() << " runs\n";
+  return converged ? 0 : 1;
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  Options options;
+  CLI::App app(
+      "Solves a rolling contact case by boundary elements and Lemke's method and prints a summary. Exit 0: all "
+      "runs solved, 1: one was not, 2: bad input.",
+      "rolling_contact");
+  app.add_option("FILE", options.file, "case (YAML, docs/rolling.md; examples in config/rolling)")->required();
+  app.add_option("--output", options.output,
+                 "folder for NAME_nodes.csv, NAME_runs.csv, NAME_curve_I.yaml; pictures by scripts/plot_rolling");
+  app.add_option("--nodes", options.nodes, "contact nodes instead of the file's")->check(CLI::Range(1, 2000));
+  try
+  {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::CallForHelp& help)
+  {
+    return app.exit(help);
+  }
+  catch (const CLI::ParseError& error)
+  {
+    std::cerr << "rolling_contact: " << error.what() << '\n';
+    return 2;
+  }
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  try
+  {
+    return run(options);
+  }
+  catch (const std::filesystem::filesystem_error& error)
+  {
+    std::cerr << "rolling_contact: " << options.output << ": " << error.code().message() << '\n';
+    return 2;
+  }
+  catch (const std::runtime_error& error)
+  {
+    std::cerr << "rolling_contact: " << error.what() << '\n';
+    return 1;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "rolling_contact: " << error.what() << '\n';
+    return 2;
+  }
 }
