@@ -143,6 +143,16 @@ TEST(ConeProjectionTest, WithoutFrictionOnlyTheNormalRaySurvives)
   EXPECT_EQ(projectOntoCone<3>(Vector<3>(-2.0, 3.0, -4.0), 0.0), Vector<3>(0.0, 0.0, 0.0));
 }
 
+TEST(ConeProjectionTest, WithoutFrictionAPullAlongTheNormalIsOutsideTheCone)
+{
+  // |x_T| <= mu x_N reads 0 <= -0 here: only the sign of x_N tells the half line from its opposite. Exact values.
+  const Vector<3> pull(-2.0, 0.0, 0.0);
+  EXPECT_FALSE(inCone<3>(pull, 0.0));
+  EXPECT_EQ(projectOntoCone<3>(pull, 0.0), Vector<3>(Vector<3>::Zero()));
+  EXPECT_EQ(coneProjectionJacobian<3>(pull, 0.0), SquareMatrix<3>(SquareMatrix<3>::Zero()));
+  EXPECT_EQ(projectOntoCone<2>(Vector<2>(-2.0, 0.0), 0.0), Vector<2>(Vector<2>::Zero()));
+}
+
 TEST(BallProjectionTest, JacobiansAgreeWithDifferencesAndAnEmptyBallGivesZero)
 {
   Sampler<2> sampler;

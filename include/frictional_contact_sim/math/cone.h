@@ -9,6 +9,9 @@
  * A vector outside both K and its polar -K* is sent to the boundary ray t (1, mu x_T/|x_T|),
  * t = (x_N + mu |x_T|) / (1 + mu^2).
  *
+ * At mu = 0 the cone is the half line x_T = 0, x_N >= 0: the sign of x_N is asked for, since |x_T| <= mu x_N alone
+ * lets every (x_N, 0) pass.
+ *
  * Source: Cadoux (2009), appendix E (projection on the second-order cone and its derivative), here without the scaling
  * to mu = 1, which would break down at mu = 0.
  */
@@ -26,7 +29,7 @@ using SquareMatrix = Eigen::Matrix<double, D, D>;
 template <int D>
 inline bool inCone(const Vector<D>& x, double mu)
 {
-  return x.template tail<D - 1>().norm() <= mu * x[0];
+  return x[0] >= 0.0 && x.template tail<D - 1>().norm() <= mu * x[0];
 }
 
 /** @brief Euclidean projection of x on K_mu. */
@@ -34,7 +37,7 @@ template <int D>
 inline Vector<D> projectOntoCone(const Vector<D>& x, double mu)
 {
   const double tangential = x.template tail<D - 1>().norm();
-  if (tangential <= mu * x[0])
+  if (x[0] >= 0.0 && tangential <= mu * x[0])
     return x;
   if (mu * tangential <= -x[0])
     return Vector<D>::Zero();
@@ -57,7 +60,7 @@ template <int D>
 inline SquareMatrix<D> coneProjectionJacobian(const Vector<D>& x, double mu)
 {
   const double tangential = x.template tail<D - 1>().norm();
-  if (tangential <= mu * x[0])
+  if (x[0] >= 0.0 && tangential <= mu * x[0])
     return SquareMatrix<D>::Identity();
   if (mu * tangential <= -x[0])
     return SquareMatrix<D>::Zero();
