@@ -3,25 +3,27 @@
  * @brief Command fclib_solve: solves one FCLib file and reports. INTERFACES.md, section 3.
  * Exit 0 converged, 1 not converged, 2 bad input.
  */
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <condition_variable>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/residual.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "tool_support.h"
 
 namespace
 {
 using namespace frictional_contact_sim;
 
-constexpr int CONVERGED = 0;
-constexpr int NOT_CONVERGED = 1;
-constexpr int BAD_INPUT = 2;
+/// Entries of W - W' above this share of the largest of W are worth a warning; below, they are round-off of who wrote
+/// it.
+constexpr double SYMMETRIC = 1e-9;
 
 struct Arguments
 {
@@ -37,12 +39,67 @@ struct Arguments
 void listSolvers()
 {
   for (const SolverEntry& entry : solverRegistry())
-    std::printf("%-16s %s (%s)\n", entry.name, entry.summary, entry.reference);
+    std::printf("%-22s %s (%s)\n", entry.name, entry.summary, entry.reference);
 }
+
+/**
+ * A line on the error output with the solves done and the time, only on a terminal and once the work has lasted two
+ * seconds. A thread of its own: a method does not tell how far it is.
+ */
+class WaitingLine
+{
+public:
+  explicit WaitingLine(int total) : total_(total), thread_(&WaitingLine::show, this) {}
+  ~WaitingLine()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      finished_ = true;
+    }
+    changed_.notify_one();
+    thread_.join();
+  }
+  WaitingLine(const WaitingLine&) = delete;
+  WaitingLine& operator=(const WaitingLine&) = delete;
+  void update(int done)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    done_ = done;
+  }
+
+private:
+  void show()
+  {
+    if (isatty(STDERR_FILENO) == 0)
+      return;
+    std::unique_lock<std::mutex> lock(mutex_);
+    const auto over = [this] { return finished_; };
+    if (changed_.wait_for(lock, std::chrono::seconds(2), over))
+      return;
+    for (int seconds = 2; !finished_; ++seconds)
+    {
+      const int filled = WIDTH * done_ / total_;
+      std::cerr << "\r[" << std::string(static_cast<std::size_t>(filled), '#')
+                << std::string(static_cast<std::size_t>(WIDTH - filled), '.') << "] " << done_ << " of " << total_
+                << " solves, " << seconds << " s" << std::flush;
+      changed_.wait_for(lock, std::chrono::seconds(1), over);
+    }
+    std::cerr << '\r' << std::string(WIDTH + 40, ' ') << '\r' << std::flush;
+  }
+
+  static constexpr int WIDTH = 40;
+  int total_;
+  int done_ = 0;
+  bool finished_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::thread thread_;
+};
 
 /** Cold solves in one process; result is the last one with the median time. */
 void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, SolverResult& result)
 {
+  WaitingLine waiting(repeat);
   std::vector<double> seconds;
   for (int k = 0; k < repeat; ++k)
   {
@@ -51,10 +108,29 @@ void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, So
     else
       solver.solve(problem.global, nullptr, result);
     seconds.push_back(result.seconds);
+    waiting.update(k + 1);
   }
   std::sort(seconds.begin(), seconds.end());
   const std::size_t middle = seconds.size() / 2;
   result.seconds = seconds.size() % 2 == 1 ? seconds[middle] : 0.5 * (seconds[middle - 1] + seconds[middle]);
+}
+
+/** An unsymmetric W is solved as it is; whoever wrote it should know. (That of a global problem is symmetric.) */
+void warnOfAsymmetry(const std::string& file, const FclibProblem& problem)
+{
+  if (problem.kind != FclibKind::LOCAL || problem.local.W.rows() == 0)
+    return;
+  const SparseRows W = problem.local.W.toSparse();
+  const SparseRows mirror = W.transpose();
+  const SparseRows difference = W - mirror;
+  double largest = 0.0, asymmetry = 0.0;
+  for (Eigen::Index k = 0; k < W.nonZeros(); ++k)
+    largest = std::max(largest, std::abs(W.valuePtr()[k]));
+  for (Eigen::Index k = 0; k < difference.nonZeros(); ++k)
+    asymmetry = std::max(asymmetry, std::abs(difference.valuePtr()[k]));
+  if (asymmetry > SYMMETRIC * largest)
+    std::fprintf(stderr, "warning: %s: W is not symmetric, |W - W'| is %.2g of |W|; solved as it is\n", file.c_str(),
+                 asymmetry / largest);
 }
 
 Diagnostics diagnoseAnswer(const FclibProblem& problem, const SolverResult& result)
@@ -107,7 +183,7 @@ int run(const Arguments& arguments)
   if (arguments.list)
   {
     listSolvers();
-    return CONVERGED;
+    return tools::SUCCESS;
   }
   if (arguments.file.empty())
     throw std::invalid_argument("FILE is missing, expected an FCLib file (see --help)");
@@ -117,11 +193,12 @@ int run(const Arguments& arguments)
   const std::unique_ptr<Solver> solver = createSolver(arguments.solver);
   solver->setStopping(arguments.stopping);
   const FclibProblem problem = readFclib(arguments.file);
+  warnOfAsymmetry(arguments.file, problem);
   SolverResult result;
   solveRepeatedly(*solver, problem, arguments.repeat, result);
   writeAnswer(arguments, problem, result);
   report(arguments, problem, result);
-  return result.status == SolverStatus::CONVERGED ? CONVERGED : NOT_CONVERGED;
+  return result.status == SolverStatus::CONVERGED ? tools::SUCCESS : tools::NOT_CONVERGED;
 }
 }  // namespace
 
@@ -130,7 +207,8 @@ int main(int argc, char** argv)
   Arguments arguments;
   CLI::App app(
       "Solves a frictional contact problem in FCLib format (local or global, 2D or 3D, with bilaterals).\n"
-      "Exit 0: converged, 1: not converged, 2: bad input.");
+      "Exit 0: converged, 1: not converged, 2: bad input.",
+      "fclib_solve");
   app.add_option("FILE", arguments.file, "FCLib file (HDF5); never changed");
   app.add_option("--solver", arguments.solver, "method, one of --list-solvers")->capture_default_str();
   app.add_option("--tolerance", arguments.stopping.tolerance, "on the residual E [-]")->capture_default_str();
@@ -139,26 +217,10 @@ int main(int argc, char** argv)
   app.add_option("--time-limit", arguments.stopping.time_limit, "wall clock of a solve [s], 0 = none")
       ->capture_default_str();
   app.add_option("--repeat", arguments.repeat, "cold solves; seconds is their median")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--output", arguments.output, "write the problem with its solution here");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
   app.add_flag("--list-solvers", arguments.list, "list the methods and leave");
-  try
-  {
-    app.parse(argc, argv);
-    return run(arguments);
-  }
-  catch (const CLI::ParseError& error)
-  {
-    if (error.get_exit_code() == 0)
-      return app.exit(error);
-    std::cerr << "fclib_solve: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "fclib_solve: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
+  return tools::runTool(app, argc, argv, [&] { return run(arguments); });
 }
