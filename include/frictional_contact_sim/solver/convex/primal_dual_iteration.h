@@ -8,11 +8,14 @@
  *     CYLINDER   x = r_N  and  x = (s, r_T)            z = u_N  and  z = (|u_T|, u_T)
  *     HALF_LINE  x = r         INTERVAL  x = (c, r)    LINE  no cone
  * With N^-1 x = N^T z = lambda the Newton step is
- *   (W + A^T N^-T N^-1 A) dr = -(W r + c - A^T z) + A^T N^-T (lambda \ d),   d = -lambda o lambda predictor d = sigma m
- * e - lambda o lambda - dx_a o dz_a    corrector (Mehrotra 1992) m = lambda.lambda / number of cones, sigma = (1 -
- * t_a)^3, one step length t for r and z. Rows whose set is a point (tangents at mu = 0, s = 0, c = 0) are held at zero
- * by an infinite shift. The shifted matrix is positive definite also when W is rank deficient. Operator: W explicit,
- * one Cholesky factorization (ShiftedFactor) and two solves an iteration, besides one product W r.
+ *   (W + A^T N^-T N^-1 A) dr = -(W r + c - A^T z) + A^T N^-T (lambda \ d)
+ *   predictor                  d = -lambda o lambda
+ *   corrector (Mehrotra 1992)  d = sigma m e - lambda o lambda - dx_a o dz_a
+ *
+ * with m = lambda.lambda / number of cones, sigma = (1 - t_a)^3 and one step length t for r and z. Rows whose set is a
+ * point (tangents at mu = 0, s = 0, c = 0) are held at zero by an infinite shift. The shifted matrix is positive
+ * definite also when W is rank deficient. Operator: W explicit, one Cholesky factorization (ShiftedFactor) and two
+ * solves an iteration, besides one product W r.
  *
  * The problem's c may change between two iterations (the outer s of Cadoux): it only enters the dual residual.
  * Source: Nesterov, Todd (1997); Vandenberghe (2010); Acary, Armand, Nguyen, Shpakovych (2022) for contact.
