@@ -66,11 +66,11 @@ std::vector<Entry> makeEntries(const DelassusProblem& problem, const Arguments& 
     std::vector<Entry> more;
     if (name == "ours")
       for (const SolverEntry& method : solverRegistry())
-        more.push_back(ourEntry(problem, method.name, arguments.measure.time_limit));
+        more.push_back(ourEntry(problem, method.name));
     else if (name.rfind("siconos", 0) == 0)
       more = siconosEntries(problem, name == "siconos" ? std::vector<std::string>() : std::vector<std::string>{name});
     else
-      more.push_back(ourEntry(problem, name, arguments.measure.time_limit));
+      more.push_back(ourEntry(problem, name));
     entries.insert(entries.end(), more.begin(), more.end());
   }
   return entries;
@@ -84,6 +84,11 @@ ProblemFacts describe(const std::string& file, const FclibProblem& problem, cons
   facts.dimension = problem.dimension;
   facts.contacts = problem.contacts;
   facts.rows = local.W.rows();
+  facts.bilaterals =
+      problem.kind == FclibKind::GLOBAL
+          ? problem.global.bilaterals()
+          : static_cast<int>(std::count_if(local.laws.begin(), local.laws.end(),
+                                           [](const Law& law) { return law.type == LawType::BILATERAL; }));
   if (facts.rows > 0 && facts.rows <= LARGEST_RANK)
     facts.rank = static_cast<int>(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(local.W.toDense()).rank());
   return facts;
@@ -151,6 +156,10 @@ int main(int argc, char** argv)
       ->capture_default_str();
   app.add_option("--time-limit", arguments.measure.time_limit, "CPU time of a solve [s]")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--give-up-factor", arguments.measure.give_up_factor,
+                 "a solve may last so many times the first solver's; 0: only the time limit counts")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--samples", arguments.measure.samples, "cold starts a median is taken of")
       ->check(CLI::PositiveNumber)

@@ -20,8 +20,12 @@ class Contestant
 {
 public:
   virtual ~Contestant() = default;
-  /** @brief Sets the tolerance (each side's own norm) for the next solve(). */
-  virtual void prepare(double tolerance) = 0;
+  /**
+   * @brief For the next `solves` calls of solve().
+   * @param tolerance in each side's own norm
+   * @param time_limit [s]; Siconos has none, its process is ended from outside
+   */
+  virtual void prepare(double tolerance, int solves, double time_limit) = 0;
   /** @brief Solves from r = 0. @return whether the solver itself says that it converged */
   virtual bool solve() = 0;
   /** @brief Impulses of the last solve(). */
@@ -38,7 +42,7 @@ struct Entry
 };
 
 /** @brief A method of our registry. @throws std::invalid_argument on an unknown name */
-Entry ourEntry(const frictional_contact_sim::DelassusProblem& problem, const std::string& solver, double time_limit);
+Entry ourEntry(const frictional_contact_sim::DelassusProblem& problem, const std::string& solver);
 
 /**
  * @brief All variants of Siconos's solvers for a problem of 2D or 3D Coulomb contacts; none for other laws.

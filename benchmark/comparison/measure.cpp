@@ -16,6 +16,9 @@ constexpr double SAMPLE_TIME = 2e-4;  ///< [s]
 constexpr int MIN_SAMPLES = 3;
 constexpr int MAX_BATCH = 200;
 constexpr int RETRIES = 3;
+constexpr double LEAST_LIMIT = 0.1;  ///< what the give-up factor leaves at least [s]
+constexpr double KILL_FACTOR = 1.2;  ///< a process is ended when its solver has used more than its limit by this
+constexpr double KILL_MARGIN = 0.02;  ///< [s]
 constexpr double QUICK = 0.02;  ///< [s]
 constexpr int GIVE_UP = 2;  ///< so many variants of a solver out of time: the others are not tried
 
@@ -26,12 +29,22 @@ struct Finding
   double tolerance, residual, thesis, seconds;
 };
 
-double timeOnce(Contestant& contestant, double tolerance, bool& claimed)
+/** Mean CPU time of so many solves. @param claimed whether the last one said that it converged */
+double timeSolves(Contestant& contestant, double tolerance, int solves, double time_limit, bool& claimed)
 {
-  contestant.prepare(tolerance);
+  contestant.prepare(tolerance, solves, time_limit);
+  limitCpuTime(solves * (KILL_FACTOR * time_limit + KILL_MARGIN));
   const double start = cpuTime();
-  claimed = contestant.solve();
-  return std::max(1e-9, cpuTime() - start - clockOverhead());
+  for (int k = 0; k < solves; ++k)
+    claimed = contestant.solve();
+  const double seconds = cpuTime() - start - clockOverhead();
+  limitCpuTime(0.0);
+  return std::max(1e-9, seconds / solves);
+}
+
+int batchSize(double seconds)
+{
+  return std::clamp(static_cast<int>(SAMPLE_TIME / seconds), 1, MAX_BATCH);
 }
 
 /** Where the ladder of tolerances starts: above the target for Siconos, whose norms differ from the judge's. */
@@ -57,9 +70,7 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
     {
       finding.tried = true;
       finding.tolerance = tolerance;
-      limitCpuTime(time_limit);
-      finding.seconds = timeOnce(*contestant, tolerance, claimed);
-      limitCpuTime(0.0);
+      finding.seconds = timeSolves(*contestant, tolerance, 1, time_limit, claimed);
       const Judgement judgement = judge(problem, contestant->impulses());
       finding.residual = judgement.residual;
       finding.thesis = judgement.thesis;
@@ -68,25 +79,22 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
         break;
     }
     // The first solve also pays for what is kept between solves: choose between variants without it.
+    const int repeats = batchSize(finding.seconds);
     for (int k = 0; finding.solved && k < RETRIES && finding.seconds < QUICK; ++k)
-    {
-      limitCpuTime(time_limit);
-      finding.seconds = std::min(finding.seconds, timeOnce(*contestant, finding.tolerance, claimed));
-      limitCpuTime(0.0);
-    }
+      finding.seconds =
+          std::min(finding.seconds, timeSolves(*contestant, finding.tolerance, repeats, time_limit, claimed));
     if (!finding.solved)
       return;  // what misses the loose target misses the tight one
   }
 }
 
 /** Searches one variant and merges what it found into the solver's outcomes. @return out of time */
-bool searchVariant(const DelassusProblem& problem, const Entry& entry, const MeasureOptions& options,
+bool searchVariant(const DelassusProblem& problem, const Entry& entry, const MeasureOptions& options, double limit,
                    std::vector<Outcome*>& outcomes)
 {
   const std::size_t targets = options.targets.size();
   SharedMemory memory(targets * sizeof(Finding));
   auto* findings = memory.as<Finding>();
-  double limit = options.time_limit;
   if (outcomes.back()->solved())
     limit = std::min(limit, 2.0 * outcomes.back()->seconds + 0.02);
   const Ending ending = runIsolated([&] { search(problem, entry, options, limit, findings); });
@@ -144,14 +152,11 @@ void sampleRounds(std::vector<Runner>& runners, const MeasureOptions& options)
     {
       if (runner.used > options.sampling_time && *runner.count >= MIN_SAMPLES)
         continue;
-      double sum = 0.0;
       bool claimed = false;
-      limitCpuTime(10.0 * options.time_limit + 1.0);
-      for (int k = 0; k < runner.batch; ++k)
-        sum += timeOnce(*runner.contestant, runner.tolerance, claimed);
-      limitCpuTime(0.0);
-      runner.used += sum;
-      runner.times[(*runner.count)++] = sum / runner.batch;
+      const double mean =
+          timeSolves(*runner.contestant, runner.tolerance, runner.batch, 10.0 * options.time_limit, claimed);
+      runner.used += mean * runner.batch;
+      runner.times[(*runner.count)++] = mean;
     }
 }
 
@@ -179,7 +184,7 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
             Runner runner;
             runner.contestant = entryOf(entries, outcomes[k]).make();
             runner.tolerance = outcomes[k].tolerance;
-            runner.batch = std::clamp(static_cast<int>(SAMPLE_TIME / outcomes[k].seconds), 1, MAX_BATCH);
+            runner.batch = batchSize(outcomes[k].seconds);
             runner.times = times + k * stride;
             runner.count = counts + k;
             runners.push_back(std::move(runner));
@@ -204,6 +209,7 @@ std::vector<std::vector<Outcome>> measure(const DelassusProblem& problem, const 
     if (std::find(solvers.begin(), solvers.end(), entry.solver) == solvers.end())
       solvers.push_back(entry.solver);
   std::vector<std::vector<Outcome>> table(options.targets.size(), std::vector<Outcome>(solvers.size()));
+  double limit = options.time_limit;
   for (std::size_t s = 0; s < solvers.size(); ++s)
   {
     std::vector<Outcome*> outcomes;
@@ -220,8 +226,10 @@ std::vector<std::vector<Outcome>> measure(const DelassusProblem& problem, const 
         outcome->solver = entry.solver;
         outcome->ours = entry.ours;
       }
-      out_of_time += searchVariant(problem, entry, options, outcomes);
+      out_of_time += searchVariant(problem, entry, options, limit, outcomes);
     }
+    if (s == 0 && options.give_up_factor > 0.0 && outcomes.back()->solved())
+      limit = std::clamp(options.give_up_factor * outcomes.back()->seconds, std::min(LEAST_LIMIT, limit), limit);
   }
   for (std::size_t t = 0; t < table.size(); ++t)
   {

@@ -22,6 +22,8 @@ struct MeasureOptions
 {
   std::vector<Target> targets;  ///< loose first
   double time_limit = 3.0;  ///< CPU time of a solve [s]
+  double give_up_factor =
+      0.0;  ///< a solve may last so many times the first solver's at the tightest target; 0: no rule
   int samples = 21;
   double sampling_time = 1.0;  ///< CPU time a solver may use for its samples [s]; at least 3 are taken
 };

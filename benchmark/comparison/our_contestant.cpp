@@ -13,16 +13,16 @@ constexpr int MAX_ITERATIONS = 1000000;
 class OurContestant : public Contestant
 {
 public:
-  OurContestant(const DelassusProblem& problem, const std::string& solver, double time_limit)
-    : problem_(problem), solver_(createSolver(solver)), time_limit_(time_limit)
+  OurContestant(const DelassusProblem& problem, const std::string& solver)
+    : problem_(problem), solver_(createSolver(solver))
   {
   }
-  void prepare(double tolerance) override
+  void prepare(double tolerance, int, double time_limit) override
   {
     StoppingOptions stopping;
     stopping.tolerance = tolerance;
     stopping.max_iterations = MAX_ITERATIONS;
-    stopping.time_limit = time_limit_;
+    stopping.time_limit = time_limit;
     solver_->setStopping(stopping);
   }
   bool solve() override
@@ -35,16 +35,15 @@ public:
 private:
   const DelassusProblem& problem_;
   std::unique_ptr<Solver> solver_;
-  double time_limit_;
   SolverResult result_;
 };
 }  // namespace
 
-Entry ourEntry(const DelassusProblem& problem, const std::string& solver, double time_limit)
+Entry ourEntry(const DelassusProblem& problem, const std::string& solver)
 {
   createSolver(solver);  // an unknown name is refused here, not in a child
   return {solver, problem.W.isDense() ? "dense" : "block rows", true,
-          [&problem, solver, time_limit] { return std::make_unique<OurContestant>(problem, solver, time_limit); }};
+          [&problem, solver] { return std::make_unique<OurContestant>(problem, solver); }};
 }
 
 }  // namespace comparison

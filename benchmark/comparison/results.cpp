@@ -30,15 +30,16 @@ CsvTable::CsvTable(const std::string& path) : file_(path)
 {
   if (!file_)
     throw std::runtime_error(path + ": cannot be written");
-  file_ << "problem,kind,dimension,contacts,rows,rank,solver,variant,ours,target,tolerance,status,residual,thesis,"
+  file_ << "problem,kind,dimension,contacts,rows,bilaterals,rank,solver,variant,ours,target,tolerance,status,residual,"
+           "thesis,"
            "seconds,samples\n";
 }
 
 void CsvTable::add(const ProblemFacts& facts, const Target& target, const Outcome& outcome)
 {
   file_ << facts.name << ',' << facts.kind << ',' << facts.dimension << ',' << facts.contacts << ',' << facts.rows
-        << ',' << facts.rank << ',' << outcome.solver << ",\"" << outcome.variant << "\"," << (outcome.ours ? 1 : 0)
-        << ',' << target.label() << ',' << outcome.tolerance << ',' << outcome.status << ','
+        << ',' << facts.bilaterals << ',' << facts.rank << ',' << outcome.solver << ",\"" << outcome.variant << "\","
+        << (outcome.ours ? 1 : 0) << ',' << target.label() << ',' << outcome.tolerance << ',' << outcome.status << ','
         << outcome.judgement.residual << ',' << outcome.judgement.thesis << ',' << outcome.seconds << ','
         << outcome.samples << std::endl;
 }

@@ -18,6 +18,7 @@ struct ProblemFacts
   int dimension = 3;
   int contacts = 0;
   int rows = 0;
+  int bilaterals = 0;
   int rank = 0;  ///< of W, 0 when not computed
 };
 

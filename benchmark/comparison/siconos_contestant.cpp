@@ -93,22 +93,29 @@ public:
                                                     copyToSiconos(problem.W, recipe.storage), q_.data(), mu_.data());
   }
   /** New options for every solve: some solvers change theirs (inner tolerances, penalties) as they go. */
-  void prepare(double tolerance) override
+  void prepare(double tolerance, int solves, double) override
   {
-    if (options_ != nullptr)
-      solver_options_delete(options_);
-    options_ = solver_options_create(recipe_.id);
-    options_->dparam[SICONOS_DPARAM_TOL] = tolerance;
-    options_->iparam[SICONOS_IPARAM_MAX_ITER] = recipe_.max_iterations;
-    if (recipe_.adjust)
-      recipe_.adjust(*options_);
+    for (SolverOptions* options : options_)
+      solver_options_delete(options);
+    options_.clear();
+    for (int k = 0; k < solves; ++k)
+    {
+      SolverOptions* options = solver_options_create(recipe_.id);
+      options->dparam[SICONOS_DPARAM_TOL] = tolerance;
+      options->iparam[SICONOS_IPARAM_MAX_ITER] = recipe_.max_iterations;
+      if (recipe_.adjust)
+        recipe_.adjust(*options);
+      options_.push_back(options);
+    }
+    next_ = 0;
   }
   bool solve() override
   {
     r_.setZero();
     u_.setZero();
-    const int info = dimension_ == 3 ? fc3d_driver(problem_, r_.data(), u_.data(), options_)
-                                     : fc2d_driver(problem_, r_.data(), u_.data(), options_);
+    SolverOptions* options = options_[next_++];
+    const int info = dimension_ == 3 ? fc3d_driver(problem_, r_.data(), u_.data(), options)
+                                     : fc2d_driver(problem_, r_.data(), u_.data(), options);
     return info == 0;
   }
   const Eigen::VectorXd& impulses() const override { return r_; }
@@ -119,7 +126,8 @@ private:
   Eigen::VectorXd q_, r_, u_;
   std::vector<double> mu_;
   FrictionContactProblem* problem_ = nullptr;  ///< lives as long as the child process
-  SolverOptions* options_ = nullptr;
+  std::vector<SolverOptions*> options_;
+  std::size_t next_ = 0;
 };
 }  // namespace
 

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Performance profiles (Dolan, More 2002) of a comparison: plot_profiles.py RESULTS.csv [...] --images FOLDER
+
+rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all.
+Left: our methods, right: Siconos's, our portfolio in both. Targets 1e-4 and 1e-8 of the residual E, judged by the
+independent validator.
+"""
+import argparse
+import csv
+import math
+import os
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+LARGEST_RATIO = 100.0
+
+
+def read_times(paths, target):
+    """{problem: {solver: seconds}} of what was solved, and the names of ours and theirs."""
+    times, ours, theirs = {}, [], []
+    for path in paths:
+        with open(path, newline="") as file:
+            for row in csv.DictReader(file):
+                if row["target"].startswith("thesis") or float(row["target"]) != target:
+                    continue
+                solver = row["solver"].replace("siconos 2D", "siconos")
+                names = ours if row["ours"] == "1" else theirs
+                if solver not in names:
+                    names.append(solver)
+                solved = times.setdefault((path, row["problem"]), {})
+                if row["status"] == "solved":
+                    solved[solver] = float(row["seconds"])
+    return times, ours, theirs
+
+
+def profile(times, solver):
+    """Steps (tau, share) of one solver."""
+    ratios = sorted(solved[solver] / min(solved.values()) for solved in times.values() if solver in solved)
+    steps = [(1.0, 0.0)]
+    for count, ratio in enumerate(ratios, start=1):
+        steps += [(ratio, steps[-1][1]), (ratio, count / len(times))]
+    return steps + [(max(LARGEST_RATIO, steps[-1][0]), steps[-1][1])]
+
+
+def plot(times, ours, theirs, target, path):
+    figure, panels = plt.subplots(1, 2, figsize=(13, 5.5), sharey=True)
+    for panel, title, names in ((panels[0], "this package", ours),
+                                (panels[1], "Siconos 4.4.0", ["portfolio"] + theirs)):
+        colours = plt.get_cmap("tab20").colors
+        for number, name in enumerate(names):
+            steps = profile(times, name)
+            first = name == "portfolio"
+            panel.plot([tau for tau, _ in steps], [share for _, share in steps], label=name.replace("siconos ", ""),
+                       color="black" if first else colours[number % 20], linewidth=2.5 if first else 1.4,
+                       linestyle="-" if first or number % 2 else "--")
+        panel.set_xscale("log")
+        panel.set_xlim(1.0, LARGEST_RATIO)
+        panel.set_ylim(0.0, 1.02)
+        panel.set_xlabel("time / time of the quickest solver")
+        panel.set_title(title)
+        panel.grid(alpha=0.3, which="both")
+        panel.legend(fontsize=7, loc="lower right", ncol=2)
+    panels[0].set_ylabel(f"share of {len(times)} problems solved")
+    figure.suptitle(f"Performance profiles, residual E <= {target:g}, cold starts, CPU time")
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("results", nargs="+", help="CSV files of compare_siconos")
+    parser.add_argument("--images", default="docs/images", help="folder of the pictures")
+    arguments = parser.parse_args()
+    os.makedirs(arguments.images, exist_ok=True)
+    for target in (1e-4, 1e-8):
+        times, ours, theirs = read_times(arguments.results, target)
+        # A problem nobody solved has no quickest solver and says nothing of the order.
+        solvable = {problem: solved for problem, solved in times.items() if solved}
+        if solvable:
+            exponent = round(math.log10(target))
+            plot(solvable, ours, theirs, target, os.path.join(arguments.images, f"profile_1e{exponent}.png"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,240 @@
+#!/usr/bin/python3
+"""Writes docs/solvers.md from the CSV files of scripts/benchmark_solvers and a template with {{NAME}} in it.
+
+A stage that was not run leaves a line saying so in place of its tables.
+"""
+import argparse
+import csv
+import math
+import os
+import re
+import statistics
+
+REFERENCE = "portfolio"
+CLASSES = ["2D", "full rank, 1 to 10 contacts", "full rank, more contacts", "hyperstatic (rows > rank W), 1 to 30 contacts",
+           "hyperstatic, more contacts", "with bilaterals", "random small", "random large"]
+
+
+def read(results, stage):
+    path = os.path.join(results, stage + ".csv")
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        row["stage"] = stage
+    return rows
+
+
+def duration(seconds):
+    for unit, factor in (("us", 1e6), ("ms", 1e3)):
+        if seconds * factor < 999.5:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def solved(row):
+    return row["status"] == "solved"
+
+
+def class_of(row):
+    if row["stage"].startswith("random_"):
+        return row["stage"].replace("_", " ")
+    if int(row["bilaterals"]) > 0:
+        return "with bilaterals"
+    if row["dimension"] == "2":
+        return "2D"
+    contacts = int(row["contacts"])
+    if int(row["rows"]) > int(row["rank"]) > 0:
+        return CLASSES[3] if contacts <= 30 else CLASSES[4]
+    return CLASSES[1] if contacts <= 10 else CLASSES[2]
+
+
+def group(rows, target):
+    """{problem: rows} of one target, in the order of the file."""
+    problems = {}
+    for row in rows:
+        if row["target"] == target:
+            problems.setdefault(row["problem"], []).append(row)
+    return problems
+
+
+def targets_of(rows):
+    return list(dict.fromkeys(row["target"] for row in rows))
+
+
+def ratio_table(rows, target):
+    lines, ratios, only_ours, only_theirs = [], [], 0, 0
+    for problem, outcomes in group(rows, target).items():
+        ours = next((row for row in outcomes if row["solver"] == REFERENCE and solved(row)), None)
+        theirs = min((row for row in outcomes if row["ours"] == "0" and solved(row)),
+                     key=lambda row: float(row["seconds"]), default=None)
+        ratio = "-"
+        if ours and theirs:
+            ratios.append(float(theirs["seconds"]) / float(ours["seconds"]))
+            ratio = f"{ratios[-1]:.2f}"
+        only_ours += bool(ours and not theirs)
+        only_theirs += bool(theirs and not ours)
+        first = outcomes[0]
+        lines.append([problem, class_of(first), first["contacts"], f"{first['rows']}/{first['rank']}",
+                      duration(float(ours["seconds"])) if ours else "unsolved",
+                      duration(float(theirs["seconds"])) if theirs else "none",
+                      f"{theirs['solver'].replace('siconos ', '')}, {theirs['variant']}" if theirs else "-", ratio])
+    text = table(["problem", "class", "contacts", "rows/rank W", REFERENCE, "best Siconos", "which, storage", "ratio"],
+                 lines)
+    if ratios:
+        mean = math.exp(statistics.fmean(math.log(ratio) for ratio in ratios))
+        text += (f"\n\n**Geometric mean {mean:.2f}, least {min(ratios):.2f}, largest {max(ratios):.2f}** over "
+                 f"{len(ratios)} problems that both solve; "
+                 f"below 1.0 on {sum(ratio < 1.0 for ratio in ratios)}. Solved by `{REFERENCE}` only: {only_ours}; by "
+                 f"Siconos only: {only_theirs}.")
+    return text
+
+
+def ratios(rows):
+    if not rows:
+        return "Not measured yet."
+    return "\n\n".join(f"### Target {target}\n\n{ratio_table(rows, target)}" for target in targets_of(rows))
+
+
+def class_table(rows, target):
+    cells, totals = {}, {}
+    for row in rows:
+        if row["target"] != target:
+            continue
+        kind = class_of(row)
+        totals.setdefault(kind, set()).add(row["problem"])
+        solver = row["solver"].replace("siconos 2D", "siconos")
+        cells.setdefault(solver, {}).setdefault(kind, []).append(row)
+    if not cells:
+        return "Not measured yet."
+    kinds = [kind for kind in CLASSES if kind in totals]
+    lines = []
+    for solver, by_kind in cells.items():
+        line = [f"`{solver}`" if not solver.startswith("siconos") else solver]
+        for kind in kinds:
+            outcomes = by_kind.get(kind, [])
+            times = [float(row["seconds"]) for row in outcomes if solved(row)]
+            tried = len({row["problem"] for row in outcomes})
+            line.append("-" if not tried else f"{len(times)}/{tried}" +
+                        (f", {duration(statistics.median(times))}" if times else ""))
+        lines.append(line)
+    return table(["solver"] + [f"{kind} ({len(totals[kind])})" for kind in kinds], lines)
+
+
+def thesis_table(rows, target):
+    problems = group(rows, target)
+    if not problems:
+        return "Not measured yet."
+    solvers = list(dict.fromkeys(row["solver"] for row in rows))
+    measure = "thesis" if target.startswith("thesis") else "residual"
+    lines = []
+    for solver in solvers:
+        line, count = [f"`{solver}`" if not solver.startswith("siconos") else solver], 0
+        for outcomes in problems.values():
+            row = next(row for row in outcomes if row["solver"] == solver)
+            count += solved(row)
+            if solved(row):
+                line.append(f"{float(row['seconds']) * 1e3:.3g}")
+            elif float(row[measure]) > 0.0:
+                line.append(f"({float(row[measure]):.0e})")
+            else:
+                line.append(f"({row['status']})")
+        lines.append(line + [f"**{count}/{len(problems)}**"])
+    header = ["method"] + [problem.replace("alea-", "") for problem in problems] + ["solved"]
+    return table(header, lines)
+
+
+def thesis_tables(rows):
+    if not rows:
+        return "Not measured yet."
+    names = {"thesis 1e-06": "Criterion (5.1) below 1e-6, rho = 1", "1e-08": "Residual E at most 1e-8"}
+    return "\n\n".join(f"{names.get(target, target)}; times in ms, in brackets what was reached instead:\n\n"
+                       f"{thesis_table(rows, target)}" for target in targets_of(rows))
+
+
+def exponent(points):
+    """Slope of log y over log x, least squares."""
+    logs = [(math.log(x), math.log(y)) for x, y in points if y > 0.0]
+    if len(logs) < 2:
+        return "-"
+    mean_x, mean_y = (statistics.fmean(value) for value in zip(*logs))
+    return "%.2f" % (sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs))
+
+
+def scaling(rows):
+    if not rows:
+        return "Not measured yet."
+    lines, notes = [], []
+    for solver in dict.fromkeys(row["solver"] for row in rows):
+        own = [row for row in rows if row["solver"] == solver]
+        for row in own:
+            lines.append([f"`{solver}`", row["contacts"], row["velocities"], row["status"], row["iterations"],
+                          f"{float(row['residual']):.1e}", duration(float(row["reduction_seconds"])),
+                          duration(float(row["seconds"])), f"{float(row['megabytes']):.3g}"])
+        good = [row for row in own if row["status"] == "CONVERGED" and int(row["contacts"]) >= 100]
+        times = exponent([(float(row["contacts"]), float(row["seconds"])) for row in good])
+        memory = exponent([(float(row["contacts"]), float(row["megabytes"])) for row in good])
+        reduction = exponent([(float(row["contacts"]), float(row["reduction_seconds"])) for row in own
+                              if int(row["contacts"]) >= 100 and row["status"] != "CRASHED"])
+        notes.append(f"`{solver}`: time grows as n^{times}, the reduction alone as n^{reduction}, memory as n^{memory} "
+                     f"(least squares in logarithms, converged runs from 100 contacts on).")
+    return table(["method", "contacts", "velocities", "status", "iterations", "E", "reduction", "whole solve",
+                  "memory [MB]"], lines) + "\n\n" + "\n".join(f"* {note}" for note in notes)
+
+
+def runs(results):
+    lines = []
+    for stage in ("fclib", "families", "random_small", "random_large", "scaling"):
+        path = os.path.join(results, stage + ".stage")
+        if os.path.exists(path):
+            with open(path) as file:
+                name, full, limit, seconds, date, cores = file.read().strip().split(",")
+            lines.append([name, date, cores, f"{limit} s", "yes" if full == "yes" else "no", f"{seconds} s"])
+    return table(["stage", "date", "cores", "time limit of a solve", "--full", "took"], lines)
+
+
+def count_lines(rows, target):
+    """One line a method: how many it solves."""
+    counts = {}
+    for row in rows:
+        if row["target"] == target:
+            counts.setdefault(row["solver"], []).append(solved(row))
+    return ", ".join(f"{solver} {sum(values)}/{len(values)}" for solver, values in counts.items())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--results", default="docs/results")
+    parser.add_argument("--template", default="benchmark/solvers_template.md")
+    parser.add_argument("--output", default="docs/solvers.md")
+    arguments = parser.parse_args()
+    fclib, families = read(arguments.results, "fclib"), read(arguments.results, "families")
+    small, large = read(arguments.results, "random_small"), read(arguments.results, "random_large")
+    values = {
+        "RUNS": runs(arguments.results),
+        "RATIOS": ratios(fclib),
+        "RATIOS_FAMILIES": ratios(families),
+        "RATIOS_RANDOM": "### Target 1e-08\n\n" + ratio_table(small, "1e-08") if small else "Not measured yet.",
+        "CLASSES": class_table(fclib + small + large, "1e-08"),
+        "CLASSES_LOOSE": class_table(fclib, "0.0001"),
+        "TABLE_5_7": thesis_tables([row for row in small if row["ours"] == "1"]),
+        "TABLE_5_9": thesis_tables(large),
+        "COUNTS_5_7": count_lines(small, "thesis 1e-06"),
+        "COUNTS_5_9": count_lines(large, "thesis 1e-06"),
+        "SCALING": scaling(read(arguments.results, "scaling")),
+    }
+    with open(arguments.template) as file:
+        text = file.read()
+    text = re.sub(r"\{\{(\w+)\}\}", lambda match: values[match.group(1)], text)
+    with open(arguments.output, "w") as file:
+        file.write(text)
+
+
+if __name__ == "__main__":
+    main()
