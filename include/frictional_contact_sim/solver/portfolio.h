@@ -3,10 +3,11 @@
  * @file portfolio.h
  * @brief Methods in turn, the best iterate kept: the default of the package.
  *
- *   0  the guess is already good: no iteration at all
+ *   0  the guess is already good, or, from a cold start, every law solved apart is: no iteration at all
  *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
  *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
- *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate and Newton from there, in longer rounds
+ *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
+ *      Fischer-Burmeister Newton and De Saxce's, in longer rounds
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
@@ -15,6 +16,7 @@
  */
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "frictional_contact_sim/solver/solver.h"
 
@@ -47,12 +49,15 @@ protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
+  double startApart(const DelassusProblem& problem, Eigen::VectorXd& r);
+  bool keepBetter(double value, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_;
+  std::vector<std::unique_ptr<Solver>> last_resort_;
   Eigen::VectorXd velocity_, best_r_;
   double best_value_ = 0.0;
   int used_ = 0;

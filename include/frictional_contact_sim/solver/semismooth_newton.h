@@ -12,7 +12,7 @@
  * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
  * near it: near zero for a cold start, near the last step's impulses for a warm one. Contacts predicted open are
  * eliminated before the factorization: their impulse goes to zero. Dense LU with partial pivoting up to DENSE_LIMIT
- * active rows, sparse LU beyond (which allocates).
+ * active rows, sparse LU beyond (which allocates), its ordering reused while the set of active rows stays.
  *
  * The contact function is an argument: Alart-Curnier (ac_newton) here, others are one ContactMap each.
  * Source: Alart, Curnier (1991); Cadoux (2009), 4.2, 4.3, appendix D; Acary, Bremond, Huber (2018), section on the
@@ -79,6 +79,10 @@ private:
   void prepare(const DelassusProblem& problem);
   double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
   bool direction(const DelassusProblem& problem);
+  template <int D, typename Sink>
+  void reducedRows(const DelassusProblem& problem, int i, Sink sink);
+  template <typename Sink>
+  void assemble(const DelassusProblem& problem, Sink sink);
   bool solveDense(const DelassusProblem& problem);
   bool solveSparse(const DelassusProblem& problem);
   Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
