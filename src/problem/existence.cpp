@@ -15,8 +15,8 @@ namespace
 {
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr double PI = 3.14159265358979323846;
-/// While only the sign matters s is not driven beyond this, in units of R max|H|: a margin of about |w|.
-constexpr double ENOUGH = 1e-3;
+/// While only the sign matters s is not driven beyond this, in units of |w|.
+constexpr double ENOUGH = 1.0;
 constexpr int APPROACH_ITERATIONS = 2000;
 /// A proof of impossibility must hold for velocities this many times R.
 constexpr double EXCLUSION = 1e6;
@@ -34,19 +34,24 @@ double squaredNorm(const SparseRows& H)
   return std::max(rows * columns, 1e-300);
 }
 
-/**
- * The linear program in units of R for v and R max|H| for u and s, so that its data are about one:
- *   min -s,   H v - u = -w,   E v = -b,   u_N - s - c d.u_T >= 0 for every facet (cone, d, c),   |v| <= 1
- */
+/** The linear program's units: |w| for u and s, |w|/max|H_i| for v, so that its data are about one. */
+struct Units
+{
+  double height = 1.0;  ///< of H
+  double velocity = 1.0;  ///< of u and s
+};
+
+/** min -s,   H v - u = -w,   E v = -b,   u_N - s - c d.u_T >= 0 for every facet (cone, d, c),   |v| <= R */
 class CriterionProgram
 {
 public:
-  CriterionProgram(const ContactKinematics& kinematics, double bound, double height, double cap)
-    : kinematics_(kinematics), bound_(bound), height_(height)
+  CriterionProgram(const ContactKinematics& kinematics, const Units& units, double bound, double cap)
+    : kinematics_(kinematics), units_(units)
   {
     const int size = static_cast<int>(kinematics.H.cols());
+    const double scaled_bound = bound * units.height / units.velocity;
     for (int j = 0; j < size; ++j)
-      program_.addColumn(-1.0, 1.0, 0.0);
+      program_.addColumn(-scaled_bound, scaled_bound, 0.0);
     first_u_ = size;
     for (int j = 0; j < kinematics.H.rows(); ++j)
       program_.addColumn(-LinearProgram::INFINITE, LinearProgram::INFINITE, 0.0);
@@ -63,6 +68,8 @@ public:
     std::vector<double> values = {1.0, -1.0};
     for (int k = 0; k + 1 < cone.dimension && slope != 0.0; ++k)
     {
+      if (std::abs(direction[k]) < 1e-12)
+        continue;
       columns.push_back(first_u_ + cone.row + 1 + k);
       values.push_back(-slope * direction[k]);
     }
@@ -77,11 +84,10 @@ public:
     return true;
   }
 
-  Eigen::VectorXd v() const { return bound_ * x_.head(first_u_); }
+  Eigen::VectorXd v() const { return (units_.velocity / units_.height) * x_.head(first_u_); }
   double s() const { return x_[s_]; }
   /** Scaled velocity of a row. */
   double u(int row) const { return x_[first_u_ + row]; }
-  double unit() const { return bound_ * height_; }
 
   /** The multipliers of the facets as impulses in L; they sum up to one. */
   void multipliers(Eigen::VectorXd& r, Eigen::VectorXd& lambda) const
@@ -118,14 +124,14 @@ private:
       for (SparseRows::InnerIterator entry(matrix, j); entry; ++entry)
       {
         columns.push_back(static_cast<int>(entry.col()));
-        values.push_back(entry.value() / height_);
+        values.push_back(entry.value() / units_.height);
       }
       if (first_slack >= 0)
       {
         columns.push_back(first_slack + j);
         values.push_back(-1.0);
       }
-      const double right = -offset[j] / unit();
+      const double right = -offset[j] / units_.velocity;
       const int row = program_.addRow(right, right, columns, values);
       if (first < 0)
         first = row;
@@ -134,8 +140,7 @@ private:
   }
 
   const ContactKinematics& kinematics_;
-  double bound_;
-  double height_;
+  Units units_;
   LinearProgram program_;
   int first_u_ = 0;
   int s_ = 0;
@@ -153,11 +158,12 @@ public:
     for (const DualCone& cone : kinematics.cones)
       curved_ = curved_ || (cone.dimension == 3 && cone.friction > 0.0);
     double logarithms = 0.0;
+    double height = 0.0;
     int count = 0;
     for (const DualCone& cone : kinematics.cones)
     {
       const double norm = kinematics.H.middleRows(cone.row, cone.dimension).norm();
-      height_ = std::max(height_, norm);
+      height = std::max(height, norm);
       if (norm > 0.0)
       {
         logarithms += std::log(norm);
@@ -171,8 +177,8 @@ public:
                                   kinematics.b.size() > 0 ? kinematics.b.lpNorm<Eigen::Infinity>() : 0.0);
     if (bound_ == 0.0)
       bound_ = count > 0 && speed > 0.0 ? 1e3 * speed / std::exp(logarithms / count) : 1.0;
-    if (height_ == 0.0)
-      height_ = 1.0;
+    units_.height = height > 0.0 ? height : 1.0;
+    units_.velocity = speed > 0.0 ? speed : bound_ * units_.height;
     report_.velocity_bound = bound_;
   }
 
@@ -272,7 +278,7 @@ private:
   /** Facets touching the inside: every feasible v is a certificate. */
   void insideCones()
   {
-    CriterionProgram program(kinematics_, bound_, height_, ENOUGH);
+    CriterionProgram program(kinematics_, units_, bound_, ENOUGH);
     addPolygon(program, 1.0 / std::cos(PI / options_.facets));
     ++report_.rounds;
     if (program.solve(options_.max_simplex_iterations))
@@ -282,7 +288,7 @@ private:
   /** Facets touching from outside, refined where the point leaves the cone. */
   void outsideCones()
   {
-    CriterionProgram program(kinematics_, bound_, height_, options_.maximise ? LinearProgram::INFINITE : ENOUGH);
+    CriterionProgram program(kinematics_, units_, bound_, options_.maximise ? LinearProgram::INFINITE : ENOUGH);
     addPolygon(program, 1.0);
     while (report_.rounds < options_.max_rounds)
     {
@@ -294,14 +300,12 @@ private:
       }
       consider(program.v());
       if (program.s() < ENOUGH || options_.maximise)
-        report_.upper_bound = program.s() * program.unit();
+        report_.upper_bound = program.s() * units_.velocity;
       Eigen::VectorXd lambda;
       program.multipliers(report_.multiplier, lambda);
       blocking();
-      if (decided() || addCuts(program) == 0 ||
+      if (decided() || (program.s() < 0.0 && excluded(lambda) && !options_.maximise) || addCuts(program) == 0 ||
           report_.upper_bound - report_.margin <= options_.gap * std::abs(report_.upper_bound))
-        return;
-      if (program.s() < 0.0 && excluded(lambda))
         return;
     }
   }
@@ -355,7 +359,7 @@ private:
     ContactKinematics normals = kinematics_;
     for (DualCone& cone : normals.cones)
       cone.friction = 0.0;
-    CriterionProgram program(normals, bound_, height_, ENOUGH);
+    CriterionProgram program(normals, units_, bound_, ENOUGH);
     for (std::size_t i = 0; i < normals.cones.size(); ++i)
       program.addFacet(static_cast<int>(i), Eigen::Vector2d::Zero(), 0.0);
     ++report_.rounds;
@@ -389,7 +393,7 @@ private:
   BilateralCorrection correction_;
   ExistenceReport report_;
   double bound_ = 1.0;
-  double height_ = 0.0;
+  Units units_;
   bool curved_ = false;
 };
 

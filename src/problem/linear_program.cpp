@@ -57,6 +57,8 @@ bool LinearProgram::solve(int max_iterations)
     // Tighter than Clp's 1e-7: data come scaled to one.
     Clp_setPrimalTolerance(clp, 1e-9);
     Clp_setDualTolerance(clp, 1e-9);
+    // No scaling: a coefficient of round-off size makes Clp scale its row by 1e8 and stop far from the optimum.
+    Clp_scaling(clp, 0);
   }
   if (!row_lower_.empty())
     Clp_addRows(clp, static_cast<int>(row_lower_.size()), row_lower_.data(), row_upper_.data(), row_starts_.data(),
