@@ -34,6 +34,11 @@ PairTable::PairTable(const MaterialTable& materials, const std::vector<SurfaceSi
       table_.push_back(pairMaterial(materials, a, b));
 }
 
+bool PairTable::hasCreep() const
+{
+  return std::any_of(table_.begin(), table_.end(), [](const Material& material) { return material.creep != nullptr; });
+}
+
 StepAssembly::StepAssembly(std::vector<Robot>& robots, const CollisionWorld& world, PairTable pairs)
   : robots_(robots), world_(world), pairs_(std::move(pairs))
 {
@@ -53,6 +58,12 @@ StepAssembly::StepAssembly(std::vector<Robot>& robots, const CollisionWorld& wor
           mass_columns_[robot.v_offset + j].push_back(robot.v_offset + i);
       }
   v_old_.resize(velocities_);
+  creep_ = pairs_.hasCreep();
+  rolling_shapes_.resize(world.shapeCount());
+  std::vector<size_t> next_shape(robots_.size(), 0);  // handles follow the order of a robot's shapes
+  for (int handle = 0; handle < world.shapeCount(); ++handle)
+    if (const int robot = world.shape(handle).robot; robot >= 0)
+      rolling_shapes_[handle] = RollingShape(robots_[robot].model.shapes[next_shape[robot]++]);
   for (std::vector<int>& columns : mass_columns_)
     std::sort(columns.begin(), columns.end());
 }
@@ -65,6 +76,8 @@ void StepAssembly::beginRows()
   b_.clear();
   auxiliary_mass_.clear();
   contact_rows_.clear();
+  creep_contacts_.clear();
+  rolling_rows_.clear();
   joint_rows_.clear();
   mimic_rows_.clear();
   problem_.laws.clear();
@@ -174,6 +187,8 @@ void StepAssembly::addContact(const ContactPoint& point, int index, const StepSe
   contact.restitution = material.restitution;
   contact.shift = shift.shift;
   contact.closing = shift.closing;
+  if (material.creep != nullptr && settings != nullptr && !contact.closing)
+    addCreep(point, *material.creep, velocity, contact);
 
   for (int d = 0; d < 3; ++d)
   {
@@ -191,9 +206,15 @@ void StepAssembly::addContact(const ContactPoint& point, int index, const StepSe
         value += axes[d]->dot(columns_b_[j++].second);
       rows_h_.push(std::min(column_a, column_b), value);
     }
+    if (d == 1 && contact.creep.compliance > 0.0)
+    {
+      // u_d + k r_d: an auxiliary velocity of mass 1/k
+      rows_h_.push(velocities_ + static_cast<int>(auxiliary_mass_.size()), 1.0);
+      auxiliary_mass_.push_back(1.0 / contact.creep.compliance);
+    }
     rows_h_.endRow();
     contact.base_velocity[d] = axes[d]->dot(relative_base);
-    w_.push_back(contact.base_velocity[d] + (d == 0 ? shift.shift : 0.0));
+    w_.push_back(contact.base_velocity[d] + (d == 0 ? shift.shift : d == 1 ? contact.creep.offset : 0.0));
   }
   problem_.laws.push_back({LawType::COULOMB_3D, material.friction});
   contact_rows_.push_back(contact);

@@ -47,6 +47,8 @@ void Simulator::Impl::storeContacts(const std::vector<ContactPoint>& points)
     const Eigen::Vector3d r = result.solution.r.segment<3>(row.row);
     Eigen::Vector3d u = result.solution.u.segment<3>(row.row);
     u[0] -= row.shift;
+    if (row.creep.compliance > 0.0)
+      u[1] -= row.creep.compliance * r[1] + row.creep.offset;
     ContactState state;
     state.id = point.id;
     state.shape_a = point.shape_a;

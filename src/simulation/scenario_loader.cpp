@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "creep_curve_reader.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "yaml_reader.h"
 
@@ -69,6 +70,41 @@ Material readMaterial(const YamlReader& map, const Material& fallback)
   return material;
 }
 
+std::string resolveRelative(const YamlReader& path)
+{
+  const std::filesystem::path folder = std::filesystem::absolute(path.file()).parent_path();
+  try
+  {
+    return resolvePath(path.text(), folder.string());
+  }
+  catch (const ModelError& error)
+  {
+    path.fail(error.what());
+  }
+}
+
+/** law: creep takes its friction from the curve, whose shape depends on it. */
+void readPairLaw(const YamlReader& pair, Material& material)
+{
+  const std::string law = pair.has("law") ? pair.child("law").text() : "coulomb";
+  if (law != "coulomb" && law != "creep")
+    pair.child("law").fail("found '" + law + "', expected coulomb or creep");
+  if (law == "coulomb")
+  {
+    if (pair.has("curve"))
+      pair.child("curve").fail("found '" + pair.child("curve").text() + "', expected none without law: creep");
+    return;
+  }
+  if (!pair.has("curve"))
+    pair.fail("law creep: found no curve, expected curve: FILE");
+  material.creep = readCreepCurve(resolveRelative(pair.child("curve")));
+  if (pair.has("friction") && material.friction != material.creep->friction)
+    pair.child("friction")
+        .fail("found '" + pair.child("friction").text() + "', expected the curve's friction " +
+              std::to_string(material.creep->friction) + " or no entry");
+  material.friction = material.creep->friction;
+}
+
 void readMaterials(const YamlReader& materials, MaterialTable& table)
 {
   materials.expectMap();
@@ -92,11 +128,13 @@ void readMaterials(const YamlReader& materials, MaterialTable& table)
   for (size_t i = 0; i < pairs.node().size(); ++i)
   {
     const YamlReader pair = pairs.item(i);
-    pair.expectMap({"between", "friction", "restitution"});
+    pair.expectMap({"between", "friction", "restitution", "law", "curve"});
     const YamlReader between = pair.child("between");
     if (!between.node().IsDefined() || !between.node().IsSequence() || between.node().size() != 2)
       pair.fail("expected between: [material, material]");
-    table.pairs[std::minmax(between.item(0).text(), between.item(1).text())] = readMaterial(pair, table.fallback);
+    Material material = readMaterial(pair, table.fallback);
+    readPairLaw(pair, material);
+    table.pairs[std::minmax(between.item(0).text(), between.item(1).text())] = material;
   }
 }
 
@@ -162,19 +200,6 @@ ExternalWrench readWrench(const YamlReader& map)
   return wrench;
 }
 
-std::string readUrdfPath(const YamlReader& urdf)
-{
-  const std::filesystem::path folder = std::filesystem::absolute(urdf.file()).parent_path();
-  try
-  {
-    return resolvePath(urdf.text(), folder.string());
-  }
-  catch (const ModelError& error)
-  {
-    urdf.fail(error.what());
-  }
-}
-
 void readBodyMotion(const YamlReader& map, BodySpec& body)
 {
   if (map.has("velocity"))
@@ -238,7 +263,7 @@ BodySpec readBody(const YamlReader& map)
   body.name = map.child("name").text();
   if (!std::regex_match(body.name, std::regex("[A-Za-z][A-Za-z0-9_]*")))
     map.child("name").fail("found '" + body.name + "', expected letters, digits and _, a letter first");
-  body.urdf_path = readUrdfPath(map.child("urdf"));
+  body.urdf_path = resolveRelative(map.child("urdf"));
   if (map.has("base"))
   {
     try

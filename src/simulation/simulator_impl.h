@@ -21,10 +21,13 @@ struct Simulator::Impl
   void moveToMidpoint();
   double lookAhead() const;
   void prepareActuators();
+  void guessCreep(const std::vector<ContactPoint>& points);
   void solveStep(const std::vector<ContactPoint>& points);
   void advance();
   void finishStep(const std::vector<ContactPoint>& points);
 
+  /** Last contact of the same id, or nullptr where there was none or it was an impact. */
+  const ContactState* lastContact(std::uint64_t id) const;
   void makeGuess(const std::vector<ContactPoint>& points);
   bool boundOverloadedServos();
   /** Finite, and slower than anything that moves. */

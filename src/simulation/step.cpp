@@ -15,6 +15,7 @@ namespace
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always in the problem [m]
 constexpr double BOUNDED_FRACTION = 0.9;  ///< of its effort limit: from here on a servo is solved as a bounded row
 constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
+constexpr int CREEP_ITERATIONS = 20;  ///< Newton iterations of the creep law in a step; two or three are usual
 constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort limit that is round-off
 }  // namespace
 
@@ -92,13 +93,41 @@ void Simulator::Impl::solveStep(const std::vector<ContactPoint>& points)
 {
   // A servo found beyond its limit becomes a bounded row and the step is solved again; flags are only ever raised, so
   // this ends, and a servo that works near its limit is a bounded row from the start.
+  // Contacts with the creep law are solved on their tangents, again until these are right.
+  if (assembly.hasCreep())
+    guessCreep(points);
+  int creep_iterations = 0;
+  bool servos = false;
+  bool creep = false;
   do
   {
     assembly.assembleRows(points, settings);
     makeGuess(points);
     assembly.assembleDynamics(guess, settings);
+    if (creep && result.solution.r.size() == guess.r.size())
+      guess.r = result.solution.r;
     solve();
-  } while (boundOverloadedServos());
+    servos = boundOverloadedServos();
+    creep = !servos && assembly.hasCreep() && !step_failed && creep_iterations++ < CREEP_ITERATIONS &&
+            assembly.updateCreep(result.solution, scenario.stopping.tolerance);
+  } while (servos || creep);
+}
+
+const ContactState* Simulator::Impl::lastContact(std::uint64_t id) const
+{
+  const auto entry = std::lower_bound(contact_index.begin(), contact_index.end(), std::make_pair(id, 0));
+  if (entry == contact_index.end() || entry->first != id)
+    return nullptr;
+  const ContactState& last = contacts[entry->second];
+  return last.mode == ContactMode::IMPACT ? nullptr : &last;
+}
+
+void Simulator::Impl::guessCreep(const std::vector<ContactPoint>& points)
+{
+  assembly.startCreep(points.size());
+  for (size_t i = 0; i < points.size(); ++i)
+    if (const ContactState* last = lastContact(points[i].id))
+      assembly.setCreepNormal(static_cast<int>(i), std::max(0.0, points[i].normal.dot(last->impulse)));
 }
 
 bool Simulator::Impl::isMotion(const Solution& solution)
@@ -143,15 +172,12 @@ void Simulator::Impl::makeGuess(const std::vector<ContactPoint>& points)
   for (const ContactRow& row : assembly.contactRows())
   {
     const ContactPoint& point = points[row.point];
-    const auto entry = std::lower_bound(contact_index.begin(), contact_index.end(), std::make_pair(point.id, 0));
-    if (entry == contact_index.end() || entry->first != point.id)
+    const ContactState* last = lastContact(point.id);
+    if (last == nullptr || row.closing)
       continue;
-    const ContactState& last = contacts[entry->second];
-    if (last.mode == ContactMode::IMPACT || row.closing)
-      continue;
-    guess.r[row.row] = point.normal.dot(last.impulse);
-    guess.r[row.row + 1] = row.tangent_1.dot(last.impulse);
-    guess.r[row.row + 2] = row.tangent_2.dot(last.impulse);
+    guess.r[row.row] = point.normal.dot(last->impulse);
+    guess.r[row.row + 1] = row.tangent_1.dot(last->impulse);
+    guess.r[row.row + 2] = row.tangent_2.dot(last->impulse);
   }
   for (const JointRow& row : assembly.jointRows())
     guess.r[row.row] = joint_impulses[row.robot][row.joint][static_cast<int>(row.kind)];

@@ -20,6 +20,7 @@
 
 #include "frictional_contact_sim/collision/collision_world.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
+#include "frictional_contact_sim/dynamics/creep_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
 #include "frictional_contact_sim/dynamics/robot.h"
 #include "frictional_contact_sim/dynamics/row_builder.h"
@@ -39,6 +40,8 @@ public:
   {
     return table_[class_of_[shape_a] * classes_ + class_of_[shape_b]];
   }
+  /** @brief True when some pair has the creep law. */
+  bool hasCreep() const;
 
 private:
   int classes_ = 0;
@@ -69,6 +72,18 @@ public:
   /** @brief The whole problem of an impact at one instant: M v - M v_k = H^T r, contacts and limits at gap <= 1e-9. */
   void assembleImpact(const std::vector<ContactPoint>& points);
 
+  /** @brief True when some pair of materials has the creep law; only then are the next three calls of any use. */
+  bool hasCreep() const { return creep_; }
+  /** @brief Once a step, before assembleRows: creep contacts are linearised at the start velocities. */
+  void startCreep(size_t points);
+  /** @brief Normal impulse that is expected at a contact point; the law is Coulomb's where it is unknown. */
+  void setCreepNormal(int point, double normal);
+  /**
+   * @brief Moves the linearisation to a solution. @param tolerance of the traction, relative to mu r_N
+   * @return true when the tangents missed the law there: assemble and solve again
+   */
+  bool updateCreep(const Solution& solution, double tolerance);
+
   const IncrementalProblem& problem() const { return problem_; }
   const std::vector<ContactRow>& contactRows() const { return contact_rows_; }
   const std::vector<JointRow>& jointRows() const { return joint_rows_; }
@@ -79,6 +94,10 @@ public:
 private:
   void beginRows();
   void addContact(const ContactPoint& point, int index, const StepSettings* settings);
+  void addCreep(const ContactPoint& point, const CreepTable& curve, const Eigen::Vector3d& velocity,
+                ContactRow& contact);
+  Eigen::Vector3d addRollingSide(const ContactPoint& point, const ShapeInfo& shape, double weight,
+                                 const Eigen::Matrix3d& spin);
   void addLimits(int robot, int joint, const StepSettings* settings);
   void addJointRow(JointRow::Kind kind, int robot, int joint, double sign, double w, double shift, Law law);
   void addMimic(int robot, int joint, double dt);
@@ -88,6 +107,14 @@ private:
   Eigen::Vector3d baseVelocity(const ShapeInfo& shape, const Eigen::Vector3d& position) const;
   bool movesAlong(const Eigen::Vector3d& normal) const;
   void assembleMass(bool with_implicit);
+
+  /** One contact with the creep law; its row of rolling_rows_ has the same index. */
+  struct CreepContact
+  {
+    int contact;  ///< in contact_rows_
+    const CreepTable* curve;
+    double base_speed;  ///< share of moving bases in the rolling speed [m/s]
+  };
 
   std::vector<Robot>& robots_;
   const CollisionWorld& world_;
@@ -106,6 +133,12 @@ private:
   std::vector<std::pair<int, Eigen::Vector3d>> columns_a_;
   std::vector<std::pair<int, Eigen::Vector3d>> columns_b_;
   std::vector<std::vector<int>> mass_columns_;  ///< tree pattern of M, row by row
+  bool creep_ = false;
+  std::vector<RollingShape> rolling_shapes_;  ///< one a shape handle
+  std::vector<CreepPoint> creep_points_;  ///< one a detected point, kept over the iterations of a step
+  std::vector<CreepContact> creep_contacts_;
+  RowBuilder rolling_rows_;  ///< rolling speed along the rolling direction, by generalized velocity
+  std::vector<std::pair<int, Eigen::Vector3d>> rolling_columns_;
   std::vector<ContactRow> contact_rows_;
   std::vector<JointRow> joint_rows_;
   std::vector<MimicRow> mimic_rows_;

@@ -4,8 +4,11 @@
  * @brief Friction and restitution of a pair: the pair's entry, else the smaller of both sides' values.
  */
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
+
+#include "frictional_contact_sim/dynamics/creep_law.h"
 
 namespace frictional_contact_sim
 {
@@ -13,6 +16,7 @@ struct Material
 {
   double friction = 0.8;  ///< Coulomb coefficient [-] >= 0
   double restitution = 0.0;  ///< of the normal velocity, Moreau's rule [-] in [0, 1]
+  std::shared_ptr<const CreepTable> creep = nullptr;  ///< pairs only: the creep law; none: Coulomb's
 };
 
 struct MaterialTable

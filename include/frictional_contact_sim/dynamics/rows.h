@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "frictional_contact_sim/dynamics/creep_law.h"
+
 namespace frictional_contact_sim
 {
 /** @brief Three rows (normal, tangent 1, tangent 2) of one contact. */
@@ -22,6 +24,7 @@ struct ContactRow
   double restitution = 0.0;
   double shift = 0.0;  ///< of the normal law [m/s]; w holds base velocity + shift
   bool closing = false;
+  CreepTangent creep;  ///< along tangent_1, the rolling direction then; u of the solution holds k r + c as well
   Eigen::Vector3d base_velocity =
       Eigen::Vector3d::Zero();  ///< of moving bases, contact frame: w without the shift [m/s]
 };
