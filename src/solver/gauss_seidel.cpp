@@ -53,6 +53,12 @@ void GaussSeidel::setOptions(const GaussSeidelOptions& options)
 {
   options.validate();
   options_ = options;
+  dropSiblings();
+}
+
+std::unique_ptr<Solver> GaussSeidel::sibling() const
+{
+  return std::make_unique<GaussSeidel>(options_);
 }
 
 double GaussSeidel::sweep(const DelassusProblem& problem, Eigen::VectorXd& r) const
@@ -81,15 +87,42 @@ double GaussSeidel::sweep(const DelassusProblem& problem, Eigen::VectorXd& r) co
   return change / scale;
 }
 
+/** The step of conjugate sweeps between two of them, from the change r - previous_ of the last one. */
+void GaussSeidel::extrapolate(const DelassusProblem& problem, Eigen::VectorXd& r)
+{
+  double square = 0.0;
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const int row = problem.W.offset(i);
+    const int d = problem.W.dimension(i);
+    square += (r.segment(row, d) - previous_.segment(row, d)).squaredNorm() / stepLengths()[i];
+  }
+  const double beta = previous_square_ > 0.0 ? square / previous_square_ : 0.0;
+  previous_square_ = square;
+  const bool restart = !(beta > 0.0 && beta <= 1.0);
+  direction_ *= restart ? 0.0 : beta;
+  velocity_ = r - previous_;
+  r += direction_;
+  direction_ += velocity_;
+}
+
 void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   Eigen::VectorXd& r = result.solution.r;
   const double tolerance = stopping().tolerance;
   double window_start = std::numeric_limits<double>::infinity();
   int window_end = options_.stall_window;
+  previous_square_ = 0.0;
+  direction_.setZero(r.size());
   for (int k = 0;; ++k)
   {
     const bool last = k >= stopping().max_iterations;
+    if (options_.conjugate && !last)
+    {
+      if (k > 0)
+        extrapolate(problem, r);
+      previous_ = r;
+    }
     const double change = last ? 0.0 : sweep(problem, r);
     result.iterations = last ? k : k + 1;
     if (!last && change > LIKELY * tolerance && (k + 1) % options_.check_interval != 0)

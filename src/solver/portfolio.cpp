@@ -49,6 +49,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   options_.validate();
   GaussSeidelOptions sweeps;
   sweeps.stall_window = STALL_WINDOW;
+  sweeps.conjugate = true;
   gauss_seidel_->setOptions(sweeps);
   last_resort_.push_back(std::make_unique<FbNewtonSmoothed>());
   last_resort_.push_back(std::make_unique<DsNewton>());
@@ -60,6 +61,12 @@ void Portfolio::setOptions(const PortfolioOptions& options)
 {
   options.validate();
   options_ = options;
+  dropSiblings();
+}
+
+std::unique_ptr<Solver> Portfolio::sibling() const
+{
+  return std::make_unique<Portfolio>(options_);
 }
 
 double Portfolio::criterion(const DelassusProblem& problem, const Eigen::VectorXd& r)
