@@ -6,6 +6,60 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+constexpr OperatorKind KINDS[] = {OperatorKind::AUTOMATIC, OperatorKind::DENSE, OperatorKind::SPARSE,
+                                  OperatorKind::MATRIX_FREE};
+}
+
+const char* toString(OperatorKind kind)
+{
+  switch (kind)
+  {
+    case OperatorKind::AUTOMATIC:
+      return "automatic";
+    case OperatorKind::DENSE:
+      return "dense";
+    case OperatorKind::SPARSE:
+      return "sparse";
+    case OperatorKind::MATRIX_FREE:
+      return "matrix_free";
+  }
+  return "unknown";
+}
+
+OperatorKind operatorKind(const std::string& name)
+{
+  std::string valid;
+  for (const OperatorKind kind : KINDS)
+  {
+    if (name == toString(kind))
+      return kind;
+    valid += valid.empty() ? "" : ", ";
+    valid += toString(kind);
+  }
+  throw std::invalid_argument("unknown operator '" + name + "', expected one of: " + valid);
+}
+
+const char* toString(OperatorUse use)
+{
+  switch (use)
+  {
+    case OperatorUse::PRODUCTS:
+      return "products";
+    case OperatorUse::BLOCK_ROWS:
+      return "block rows";
+    case OperatorUse::DENSE:
+      return "dense";
+  }
+  return "unknown";
+}
+
+void DelassusOperator::throwMatrixFree()
+{
+  throw std::logic_error("a matrix-free W has no entries, only products");
+}
+
 void DelassusOperator::setBlocks(const std::vector<Law>& laws)
 {
   offsets_.resize(laws.size() + 1);
@@ -20,13 +74,14 @@ void DelassusOperator::setBlocks(const std::vector<Law>& laws)
 void DelassusOperator::resizeDense(const std::vector<Law>& laws)
 {
   is_dense_ = true;
+  is_matrix_free_ = false;
   setBlocks(laws);
   dense_.resize(rows(), rows());
 }
 
 void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vector<std::vector<int>>& block_columns)
 {
-  is_dense_ = false;
+  is_dense_ = is_matrix_free_ = false;
   dense_.resize(0, 0);
   setBlocks(laws);
   const std::size_t count = laws.size();
@@ -61,14 +116,16 @@ double* DelassusOperator::block(int i, int j)
   return values_.data() + value_begin_[row] + dimension(i) * (found - first);
 }
 
-void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& laws)
+void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& laws, OperatorKind kind)
 {
   const int size = rowCount(laws);
   if (matrix.rows() != size || matrix.cols() != size)
     throw std::invalid_argument("W is " + std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
                                 ", expected " + std::to_string(size) + " x " + std::to_string(size) +
                                 " for the given laws");
-  if (size <= DENSE_ROWS || static_cast<double>(matrix.nonZeros()) >= DENSE_SHARE * size * static_cast<double>(size))
+  const bool full =
+      size <= DENSE_ROWS || static_cast<double>(matrix.nonZeros()) >= DENSE_SHARE * size * static_cast<double>(size);
+  if (kind == OperatorKind::DENSE || (kind != OperatorKind::SPARSE && full))
   {
     resizeDense(laws);
     dense_ = matrix;
@@ -145,12 +202,21 @@ void DelassusOperator::assignSparseBlocks(const DelassusOperator& whole, const s
 }
 
 void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
-                                    const std::vector<int>& position, const std::vector<Law>& laws)
+                                    const std::vector<int>& position, const std::vector<Law>& laws, OperatorKind kind)
 {
-  const int size = rowCount(laws);
-  if (!whole.is_dense_ && size > DENSE_ROWS && whole.storedShare(blocks, position, size) < DENSE_SHARE)
+  if (whole.is_matrix_free_)
   {
     is_dense_ = false;
+    is_matrix_free_ = true;
+    setBlocks(laws);
+    assignHalfBlocks(whole, blocks);
+    return;
+  }
+  const int size = rowCount(laws);
+  const bool sparse = size > DENSE_ROWS && !whole.is_dense_ && whole.storedShare(blocks, position, size) < DENSE_SHARE;
+  if (!whole.is_dense_ && kind != OperatorKind::DENSE && (sparse || kind == OperatorKind::SPARSE))
+  {
+    is_dense_ = is_matrix_free_ = false;
     setBlocks(laws);
     assignSparseBlocks(whole, blocks, position);
     return;
@@ -180,6 +246,91 @@ void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::ve
   }
 }
 
+void DelassusOperator::assignHalf(const std::vector<Law>& laws, const std::vector<int>& touched_begin,
+                                  const std::vector<int>& touched, const std::vector<double>& values, int columns)
+{
+  is_dense_ = false;
+  is_matrix_free_ = true;
+  dense_.resize(0, 0);
+  setBlocks(laws);
+  row_begin_ = touched_begin;
+  columns_ = touched;
+  value_begin_.resize(laws.size() + 1);
+  value_begin_[0] = 0;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    value_begin_[i + 1] = value_begin_[i] + laws[i].dimension() * (touched_begin[i + 1] - touched_begin[i]);
+  values_ = values;
+  half_.resize(columns);
+  computeDiagonal();
+}
+
+void DelassusOperator::assignHalfBlocks(const DelassusOperator& whole, const std::vector<int>& blocks)
+{
+  if (place_.size() != static_cast<std::size_t>(whole.half_.size()))
+    place_.assign(static_cast<std::size_t>(whole.half_.size()), -1);
+  row_begin_.resize(blocks.size() + 1);
+  value_begin_.resize(blocks.size() + 1);
+  columns_.clear();
+  values_.clear();
+  int count = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+  {
+    row_begin_[k] = static_cast<int>(columns_.size());
+    value_begin_[k] = static_cast<int>(values_.size());
+    const int d = dimension(static_cast<int>(k));
+    whole.visitHalfRow(blocks[k],
+                       [&](int column, const double* value, int)
+                       {
+                         int& place = place_[static_cast<std::size_t>(column)];
+                         if (place < 0)
+                           place = count++;
+                         columns_.push_back(place);
+                         values_.insert(values_.end(), value, value + d);
+                       });
+  }
+  row_begin_[blocks.size()] = static_cast<int>(columns_.size());
+  value_begin_[blocks.size()] = static_cast<int>(values_.size());
+  for (const int i : blocks)
+    whole.visitHalfRow(i, [&](int column, const double*, int) { place_[static_cast<std::size_t>(column)] = -1; });
+  half_.resize(count);
+  computeDiagonal();
+}
+
+void DelassusOperator::computeDiagonal()
+{
+  diagonal_.resize(static_cast<std::size_t>(blocks()));
+  std::size_t next = static_cast<std::size_t>(value_begin_.back());
+  for (int i = 0; i < blocks(); ++i)
+  {
+    diagonal_[static_cast<std::size_t>(i)] = static_cast<int>(next);
+    next += static_cast<std::size_t>(dimension(i) * dimension(i));
+  }
+  values_.resize(next);
+  for (int i = 0; i < blocks(); ++i)
+  {
+    const int d = dimension(i);
+    double* target = values_.data() + diagonal_[static_cast<std::size_t>(i)];
+    std::fill(target, target + d * d, 0.0);
+    visitHalfRow(i,
+                 [&](int, const double* value, int)
+                 {
+                   for (int a = 0; a < d; ++a)
+                     for (int b = 0; b < d; ++b)
+                       target[a + b * d] += value[a] * value[b];
+                 });
+  }
+}
+
+template <int D>
+void DelassusOperator::addHalfProduct(int i, const Eigen::VectorXd& x) const
+{
+  const Vector<D> impulse = x.segment<D>(offset(i));
+  const auto row = static_cast<std::size_t>(i);
+  const double* value = values_.data() + value_begin_[row];
+  for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += D)
+    half_[columns_[static_cast<std::size_t>(k)]] += Eigen::Map<const Vector<D>>(value).dot(impulse);
+}
+
 void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
 {
   y.resize(rows());
@@ -188,15 +339,52 @@ void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
     y.noalias() = dense_ * x;
     return;
   }
+  if (is_matrix_free_)
+  {
+    half_.setZero();
+    for (int i = 0; i < blocks(); ++i)
+    {
+      if (dimension(i) == 3)
+        addHalfProduct<3>(i, x);
+      else if (dimension(i) == 2)
+        addHalfProduct<2>(i, x);
+      else
+        addHalfProduct<1>(i, x);
+    }
+  }
+  const Eigen::VectorXd& factor = is_matrix_free_ ? half_ : x;
   for (int i = 0; i < blocks(); ++i)
   {
     if (dimension(i) == 3)
-      y.segment<3>(offset(i)) = rowProduct<3>(i, x);
+      y.segment<3>(offset(i)) = storedProduct<3>(i, factor);
     else if (dimension(i) == 2)
-      y.segment<2>(offset(i)) = rowProduct<2>(i, x);
+      y.segment<2>(offset(i)) = storedProduct<2>(i, factor);
     else
-      y.segment<1>(offset(i)) = rowProduct<1>(i, x);
+      y.segment<1>(offset(i)) = storedProduct<1>(i, factor);
   }
+}
+
+void DelassusOperator::applyTransposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
+{
+  if (is_matrix_free_)
+  {
+    apply(x, y);
+    return;
+  }
+  y.resize(rows());
+  if (is_dense_)
+  {
+    y.noalias() = dense_.transpose() * x;
+    return;
+  }
+  y.setZero();
+  for (int i = 0; i < blocks(); ++i)
+    visitRow(i,
+             [&](int column, const double* value, int)
+             {
+               for (int k = 0; k < dimension(i); ++k)
+                 y[column] += value[k] * x[offset(i) + k];
+             });
 }
 
 Eigen::MatrixXd DelassusOperator::toDense() const

@@ -9,6 +9,14 @@ namespace
 template <int D>
 double coulombError(double mu, const double* u_data, const double* r_data, double rho, double* e)
 {
+  // Take-off, the law of most contacts of loose heaps: 0 - P(-u~) is exactly zero.
+  if (u_data[0] >= 0.0 && Eigen::Map<const Vector<D>>(r_data).isZero(0.0) &&
+      Eigen::Map<const Vector<D>>(u_data).allFinite())
+  {
+    if (e != nullptr)
+      Eigen::Map<Vector<D>>(e, D).setZero();
+    return 0.0;
+  }
   const Vector<D> u = deSaxce<D>(Eigen::Map<const Vector<D>>(u_data), mu);
   const Vector<D> r = Eigen::Map<const Vector<D>>(r_data);
   // Divided by rho before projecting (the cone is a cone): no huge intermediate values when rho is large.

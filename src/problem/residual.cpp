@@ -31,12 +31,17 @@ double blockEigenvalue(const DelassusOperator& W, int block)
 
 void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_lengths)
 {
-  const int count = problem.W.blocks();
+  computeStepLengths(problem.W, step_lengths);
+}
+
+void computeStepLengths(const DelassusOperator& W, Eigen::VectorXd& step_lengths)
+{
+  const int count = W.blocks();
   step_lengths.resize(count);
   double largest = 0.0;
   for (int i = 0; i < count; ++i)
   {
-    step_lengths[i] = blockEigenvalue(problem.W, i);
+    step_lengths[i] = blockEigenvalue(W, i);
     largest = std::max(largest, step_lengths[i]);
   }
   for (int i = 0; i < count; ++i)
@@ -48,34 +53,50 @@ void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_le
   }
 }
 
-double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off,
-                   double impulse_cap)
+LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
+                      const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off)
 {
   if (errors != nullptr)
     errors->resize(static_cast<Eigen::Index>(laws.size()));
-  double worst = 0.0;
-  double impulse = 0.0;
+  LawErrors found;
   int row = 0;
   for (std::size_t i = 0; i < laws.size(); ++i)
   {
     const auto index = static_cast<Eigen::Index>(i);
     const int dimension = laws[i].dimension();
-    const double found = naturalMapError(laws[i], u.data() + row, r.data() + row, step_lengths[index]);
-    const double error = found <= round_off ? 0.0 : found;
+    const double step_length = step_lengths[index];
+    const double raw = naturalMapError(laws[i], u.data() + row, r.data() + row, step_length);
+    const double error = raw <= round_off ? 0.0 : raw;
     if (errors != nullptr)
       (*errors)[index] = error;
     // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
-    if (!(error <= worst))
-      worst = error;
-    impulse = std::max(impulse, r.segment(row, dimension).norm() / step_lengths[index]);
+    if (!(error <= found.worst))
+      found.worst = error;
+    double square = 0.0;
+    for (int k = row; k < row + dimension; ++k)
+      square += r[k] * r[k];
+    if (square > 0.0)
+      found.impulse = std::max(found.impulse, std::sqrt(square) / step_length);
     row += dimension;
   }
-  const double velocity = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  found.velocity = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
+  return found;
+}
+
+double LawErrors::residual(double impulse_cap) const
+{
+  double error = worst;
   // r - P(r - rho u) is exactly zero once u is below the round-off of r/rho: that confirms nothing.
   if (impulse > impulse_cap * velocity)
-    worst = std::max(worst, std::numeric_limits<double>::epsilon() * impulse);
-  return worst / std::max(velocity, std::min(impulse, impulse_cap * velocity));
+    error = std::max(error, std::numeric_limits<double>::epsilon() * impulse);
+  return error / std::max(velocity, std::min(impulse, impulse_cap * velocity));
+}
+
+double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
+                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off,
+                   double impulse_cap)
+{
+  return measureLaws(laws, step_lengths, free_velocity, u, r, errors, round_off).residual(impulse_cap);
 }
 
 double localResidual(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,

@@ -5,18 +5,6 @@
 
 namespace frictional_contact_sim
 {
-namespace
-{
-bool hasEntry(const DelassusOperator::Dense& W, int row, int rows, int column, int columns)
-{
-  for (int a = 0; a < rows; ++a)
-    for (int b = 0; b < columns; ++b)
-      if (W(row + a, column + b) != 0.0)
-        return true;
-  return false;
-}
-}  // namespace
-
 int Islands::root(int i)
 {
   auto k = static_cast<std::size_t>(i);
@@ -43,13 +31,18 @@ int Islands::uniteDense(const DelassusOperator& W)
   const int blocks = W.blocks();
   int count = blocks;
   for (int i = 0; i < blocks && count > 1; ++i)
-    for (int j = i + 1; j < blocks; ++j)
-      if (root(i) != root(j) && (hasEntry(W.dense(), W.offset(i), W.dimension(i), W.offset(j), W.dimension(j)) ||
-                                 hasEntry(W.dense(), W.offset(j), W.dimension(j), W.offset(i), W.dimension(i))))
-      {
-        unite(i, j);
+  {
+    // Whole block rows, so that W_ij is seen from i and W_ji from j.
+    magnitude_ = W.dense().middleRows(W.offset(i), W.dimension(i)).cwiseAbs().colwise().maxCoeff();
+    for (int j = 0; j < blocks && count > 1; ++j)
+    {
+      bool coupled = false;
+      for (int column = W.offset(j); column < W.offset(j + 1); ++column)
+        coupled = coupled || magnitude_[column] > 0.0;
+      if (coupled && unite(i, j))
         --count;
-      }
+    }
+  }
   return count;
 }
 
@@ -73,13 +66,29 @@ int Islands::uniteSparse(const DelassusOperator& W)
   return count;
 }
 
+int Islands::uniteMatrixFree(const DelassusOperator& W)
+{
+  int count = W.blocks();
+  toucher_.assign(static_cast<std::size_t>(W.halfColumns()), -1);
+  for (int i = 0; i < W.blocks() && count > 1; ++i)
+    W.visitHalfRow(i,
+                   [&](int column, const double*, int)
+                   {
+                     int& toucher = toucher_[static_cast<std::size_t>(column)];
+                     if (toucher >= 0)
+                       count -= unite(i, toucher) ? 1 : 0;
+                     toucher = i;
+                   });
+  return count;
+}
+
 int Islands::find(const DelassusOperator& W)
 {
   const int blocks = W.blocks();
   order_.clear();
   parent_.resize(static_cast<std::size_t>(blocks));
   std::iota(parent_.begin(), parent_.end(), 0);
-  const int count = W.isDense() ? uniteDense(W) : uniteSparse(W);
+  const int count = W.isDense() ? uniteDense(W) : W.isMatrixFree() ? uniteMatrixFree(W) : uniteSparse(W);
   if (count <= 1)
     return count;
   const auto size = static_cast<std::size_t>(count);

@@ -55,18 +55,8 @@ void ScaledContacts::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y)
 
 void ScaledContacts::applyTransposed(const Eigen::VectorXd& x, Eigen::VectorXd& y)
 {
-  y.setZero(x.size());
-  for (int i = 0; i < problem_->W.blocks(); ++i)
-  {
-    const int row = offset(i);
-    const int d = problem_->W.dimension(i);
-    problem_->W.visitRow(i,
-                         [&](int column, const double* w, int stride)
-                         {
-                           for (int k = 0; k < d; ++k)
-                             y[column] += w[k * stride] * root_[row + k] * x[row + k];
-                         });
-  }
+  work_ = x.cwiseProduct(root_);
+  problem_->W.applyTransposed(work_, y);
   y.array() *= root_.array();
 }
 

@@ -119,6 +119,12 @@ void SemismoothNewton::setOptions(const SemismoothNewtonOptions& options)
 {
   options.validate();
   options_ = options;
+  dropSiblings();
+}
+
+std::unique_ptr<Solver> SemismoothNewton::sibling() const
+{
+  return std::make_unique<SemismoothNewton>(name(), map_, options_);
 }
 
 void SemismoothNewton::prepare(const DelassusProblem& problem)

@@ -37,6 +37,11 @@ SlipMap::SlipMap(std::unique_ptr<ConvexSolver> inner) : inner_(std::move(inner))
 
 SlipMap::~SlipMap() = default;
 
+OperatorUse SlipMap::operatorUse() const
+{
+  return inner_->operatorUse();
+}
+
 void SlipMap::setProblem(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths)
 {
   problem_ = &problem;

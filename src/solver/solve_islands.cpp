@@ -135,7 +135,7 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
     result.status = SolverStatus::CONVERGED;
     return;
   }
-  slot.problem.W.assignBlocks(whole.W, islands_->laws, islands_->position, slot.problem.laws);
+  slot.problem.W.assignBlocks(whole.W, islands_->laws, islands_->position, slot.problem.laws, stopping_.operator_kind);
   method.doSolve(slot.problem, result);
   if (!result.solution.r.allFinite())
   {

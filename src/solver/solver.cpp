@@ -142,9 +142,25 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
     result.status = SolverStatus::NUMERICAL_FAILURE;
     result.message = "an impulse is not finite";
   }
-  const double value = localResidual(problem, step_lengths_, result.solution.r, result.solution.u);
-  criterion_ = residual(problem, result.solution.u, result.solution.r);
-  return value;
+  problem.W.apply(result.solution.r, result.solution.u);
+  result.solution.u += problem.q;
+  const LawErrors errors =
+      measureLaws(problem.laws, step_lengths_, free_velocity_, result.solution.u, result.solution.r);
+  criterion_ = errors.residual(IMPULSE_CAP);
+  return errors.residual();
+}
+
+void Solver::checkOperator(bool global) const
+{
+  if (stopping_.operator_kind != OperatorKind::MATRIX_FREE)
+    return;
+  if (operatorUse() != OperatorUse::PRODUCTS)
+    throw std::invalid_argument("operator matrix_free: " + name_ + " uses W as '" + toString(operatorUse()) +
+                                "', expected a method that uses 'products'");
+  if (!global)
+    throw std::invalid_argument(
+        "operator matrix_free: a local problem is given by W, expected automatic, dense or "
+        "sparse");
 }
 
 void Solver::judge(double residual, double tolerance, SolverResult& result) const
@@ -177,7 +193,17 @@ void Solver::solve(const DelassusProblem& problem, const Solution* guess, Solver
   clear(result);
   result.solution.v.resize(0);
   result.solution.lambda.resize(0);
-  const double value = solveLocal(problem, guess, result);
+  checkOperator(false);
+  const DelassusProblem* used = &problem;
+  const bool dense = stopping_.operator_kind == OperatorKind::DENSE;
+  if (stopping_.operator_kind != OperatorKind::AUTOMATIC && problem.W.isDense() != dense)
+  {
+    converted_.laws = problem.laws;
+    converted_.q = problem.q;
+    converted_.W.assign(problem.W.toSparse(), problem.laws, stopping_.operator_kind);
+    used = &converted_;
+  }
+  const double value = solveLocal(*used, guess, result);
   judge(value, stopping_.tolerance, result);
 }
 
@@ -188,7 +214,8 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   if (guess != nullptr)
     checkGuess(*guess, problem.rows());
   clear(result);
-  reduction_->compute(problem);
+  checkOperator(true);
+  reduction_->compute(problem, stopping_.operator_kind);
   const DelassusProblem& local = reduction_->problem();
   global_.step_lengths = reduction_->stepLengths();
   global_.free_velocity = reduction_->freeVelocity();

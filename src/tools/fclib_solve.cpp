@@ -29,6 +29,7 @@ struct Arguments
 {
   std::string file;
   std::string solver = "portfolio";
+  std::string operator_name = toString(OperatorKind::AUTOMATIC);
   std::string output;
   StoppingOptions stopping;
   int repeat = 1;
@@ -36,10 +37,11 @@ struct Arguments
   bool list = false;
 };
 
+/** Name, what it needs of W, what it does. */
 void listSolvers()
 {
   for (const SolverEntry& entry : solverRegistry())
-    std::printf("%-22s %s (%s)\n", entry.name, entry.summary, entry.reference);
+    std::printf("%-22s %-10s  %s (%s)\n", entry.name, toString(entry.uses), entry.summary, entry.reference);
 }
 
 /**
@@ -137,7 +139,9 @@ Diagnostics diagnoseAnswer(const FclibProblem& problem, const SolverResult& resu
 {
   if (problem.kind == FclibKind::LOCAL)
     return diagnose(problem.local.laws, problem.local.q, result.solution.u, result.solution.r);
-  return diagnose(problem.global.laws, reduce(problem.global).q, result.solution.u, result.solution.r);
+  DelassusReduction reduction;
+  reduction.compute(problem.global, OperatorKind::MATRIX_FREE);
+  return diagnose(problem.global.laws, reduction.problem().q, result.solution.u, result.solution.r);
 }
 
 void report(const Arguments& arguments, const FclibProblem& problem, const SolverResult& result)
@@ -191,7 +195,9 @@ int run(const Arguments& arguments)
       std::filesystem::exists(arguments.file) && std::filesystem::equivalent(arguments.output, arguments.file))
     throw std::invalid_argument("--output " + arguments.output + " is FILE itself, expected another file");
   const std::unique_ptr<Solver> solver = createSolver(arguments.solver);
-  solver->setStopping(arguments.stopping);
+  StoppingOptions stopping = arguments.stopping;
+  stopping.operator_kind = operatorKind(arguments.operator_name);
+  solver->setStopping(stopping);
   const FclibProblem problem = readFclib(arguments.file);
   warnOfAsymmetry(arguments.file, problem);
   SolverResult result;
@@ -211,6 +217,9 @@ int main(int argc, char** argv)
       "fclib_solve");
   app.add_option("FILE", arguments.file, "FCLib file (HDF5); never changed");
   app.add_option("--solver", arguments.solver, "method, one of --list-solvers")->capture_default_str();
+  app.add_option("--operator", arguments.operator_name,
+                 "storage of W: automatic, dense, sparse; matrix_free (global files, methods that use products)")
+      ->capture_default_str();
   app.add_option("--tolerance", arguments.stopping.tolerance, "on the residual E [-]")->capture_default_str();
   app.add_option("--max-iterations", arguments.stopping.max_iterations, "iterations of the method")
       ->capture_default_str();

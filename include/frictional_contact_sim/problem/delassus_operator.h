@@ -2,14 +2,17 @@
 /**
  * @file delassus_operator.h
  * @brief The Delassus matrix W = H M^-1 H^T [1/kg] behind one concrete class: dense storage when small, block rows when
- * large. No virtual call; the inner products are inline.
+ * large, or only its half Z. No virtual call; the inner products are inline.
  *
  * Rows are grouped in blocks of 1, 2 or 3, one block a law, in the order of the laws.
  *   dense    all rows, contiguous (row-major), so that a block's product is D dot products;
  *   sparse   a block row stores the columns it touches and, column by column, its D values:  sum over touched columns.
- * W need not be exactly symmetric (measured problems are not); nothing here assumes it.
+ *   matrix-free   W = Z Z^T is never formed: Z = H C^-T (M = C C^T) in block rows and the diagonal blocks W_ii are
+ * kept; a product is Z (Z^T x). Only apply(), applyTransposed() and diagonalBlock() work. W need not be exactly
+ * symmetric (measured problems are not); nothing here assumes it.
  */
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "frictional_contact_sim/math/cone.h"
@@ -18,6 +21,31 @@
 
 namespace frictional_contact_sim
 {
+/** @brief How W is kept. AUTOMATIC: dense or sparse by size and density. */
+enum class OperatorKind
+{
+  AUTOMATIC,
+  DENSE,
+  SPARSE,
+  MATRIX_FREE
+};
+
+/** @brief "automatic", "dense", "sparse", "matrix_free". */
+const char* toString(OperatorKind kind);
+/** @throws std::invalid_argument on an unknown name; the message lists the valid ones. */
+OperatorKind operatorKind(const std::string& name);
+
+/** @brief What a method needs of W. */
+enum class OperatorUse
+{
+  PRODUCTS,  ///< W x and the diagonal blocks: runs matrix-free
+  BLOCK_ROWS,  ///< the entries, block row by block row: dense or sparse
+  DENSE  ///< all entries as one dense matrix, whatever the storage
+};
+
+/** @brief "products", "block rows", "dense". */
+const char* toString(OperatorUse use);
+
 class DelassusOperator
 {
 public:
@@ -43,18 +71,32 @@ public:
   /** @brief Values of block (i, j): dimension(i) x dimension(j), column-major. @return nullptr when not stored. */
   double* block(int i, int j);
 
-  /** @brief Copies a matrix, choosing the storage by size and density. @throws std::invalid_argument on wrong shape. */
-  void assign(const SparseRows& matrix, const std::vector<Law>& laws);
+  /**
+   * @brief Matrix-free storage: copies Z, block row by block row. No allocation when an earlier call had the same
+   * shapes.
+   * @param touched_begin laws + 1, into touched: the columns of Z that block row i touches
+   * @param values of Z, dimension(i) a touched column
+   * @param columns of Z: the number of velocities
+   */
+  void assignHalf(const std::vector<Law>& laws, const std::vector<int>& touched_begin, const std::vector<int>& touched,
+                  const std::vector<double>& values, int columns);
+
+  /**
+   * @brief Copies a matrix, choosing the storage by size and density unless it is DENSE or SPARSE.
+   * @throws std::invalid_argument on wrong shape
+   */
+  void assign(const SparseRows& matrix, const std::vector<Law>& laws, OperatorKind kind = OperatorKind::AUTOMATIC);
   void assign(const Eigen::MatrixXd& matrix, const std::vector<Law>& laws);
 
   /**
-   * @brief The principal sub-matrix of some blocks of another operator, dense or sparse by its own size and density.
-   * Blocks that couple them with others are dropped. No allocation when an earlier call had the same shapes.
+   * @brief The principal sub-matrix of some blocks of another operator: dense or sparse by its own size and density, or
+   * as `kind` says; matrix-free when the other is. Blocks that couple them with others are dropped. No allocation when
+   * an earlier call had the same shapes.
    * @param blocks which, ascending; laws are theirs
    * @param position for every block of `whole` its place in `blocks`, or -1
    */
   void assignBlocks(const DelassusOperator& whole, const std::vector<int>& blocks, const std::vector<int>& position,
-                    const std::vector<Law>& laws);
+                    const std::vector<Law>& laws, OperatorKind kind = OperatorKind::AUTOMATIC);
 
   int rows() const { return offsets_.empty() ? 0 : offsets_.back(); }
   int blocks() const { return static_cast<int>(offsets_.size()) - (offsets_.empty() ? 0 : 1); }
@@ -64,22 +106,33 @@ public:
   int blockOf(int row) const { return block_of_row_[static_cast<std::size_t>(row)]; }
   int dimension(int i) const { return offset(i + 1) - offset(i); }
   bool isDense() const { return is_dense_; }
+  bool isMatrixFree() const { return is_matrix_free_; }
   /** @brief All stored values, for checks. */
   const double* valueData() const { return is_dense_ ? dense_.data() : values_.data(); }
   Eigen::Index valueCount() const { return is_dense_ ? dense_.size() : static_cast<Eigen::Index>(values_.size()); }
 
   /** @brief y = W x; y must not alias x. */
   void apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-  /** @brief (W x) restricted to block i. */
+  /** @brief y = W^T x; y must not alias x. */
+  void applyTransposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  /** @brief (W x) restricted to block i. Not matrix-free. */
   template <int D>
   Vector<D> rowProduct(int i, const Eigen::VectorXd& x) const;
   /** @brief W_ii. */
   template <int D>
   SquareMatrix<D> diagonalBlock(int i) const;
 
-  /** @brief Visits block row i: visit(column, pointer to D values, stride between them) for every stored column. */
+  /**
+   * @brief Visits block row i: visit(column, pointer to D values, stride between them) for every stored column.
+   * @throws std::logic_error when matrix-free
+   */
   template <typename Visitor>
   void visitRow(int i, Visitor visit) const;
+  /** @brief The same for block row i of Z. Only matrix-free. */
+  template <typename Visitor>
+  void visitHalfRow(int i, Visitor visit) const;
+  /** @brief Columns of Z. Only matrix-free. */
+  int halfColumns() const { return static_cast<int>(half_.size()); }
 
   Eigen::MatrixXd toDense() const;
   SparseRows toSparse() const;
@@ -89,16 +142,26 @@ private:
   double storedShare(const std::vector<int>& blocks, const std::vector<int>& position, int rows) const;
   void assignSparseBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
                           const std::vector<int>& position);
+  void assignHalfBlocks(const DelassusOperator& whole, const std::vector<int>& blocks);
+  void computeDiagonal();
+  template <int D>
+  void addHalfProduct(int i, const Eigen::VectorXd& x) const;
+  template <int D>
+  Vector<D> storedProduct(int i, const Eigen::VectorXd& x) const;
+  [[noreturn]] static void throwMatrixFree();
 
+  bool is_matrix_free_ = false;
   bool is_dense_ = true;
   std::vector<int> block_of_row_;  ///< rows
   std::vector<int> offsets_;  ///< blocks + 1, first row of each block
   Dense dense_;  ///< rows x rows, or empty
-  std::vector<int> columns_;  ///< touched columns, block row by block row
+  std::vector<int> columns_;  ///< touched columns of W, or of Z when matrix-free, block row by block row
   std::vector<int> row_begin_;  ///< blocks + 1, into columns_
   std::vector<int> value_begin_;  ///< blocks + 1, into values_
   std::vector<int> diagonal_;  ///< blocks, into values_: where W_ii starts
-  std::vector<double> values_;
+  std::vector<double> values_;  ///< matrix-free: those of Z, then those of the diagonal blocks
+  mutable Eigen::VectorXd half_;  ///< Z^T x
+  std::vector<int> place_;  ///< workspace: new number of a column of Z, or -1
 };
 
 template <int D>
@@ -110,7 +173,13 @@ inline Vector<D> DelassusOperator::rowProduct(int i, const Eigen::VectorXd& x) c
     y.noalias() = dense_.middleRows<D>(offset(i)).lazyProduct(x);
     return y;
   }
-  y.setZero();
+  return storedProduct<D>(i, x);
+}
+
+template <int D>
+inline Vector<D> DelassusOperator::storedProduct(int i, const Eigen::VectorXd& x) const
+{
+  Vector<D> y = Vector<D>::Zero();
   const auto row = static_cast<std::size_t>(i);
   const double* value = values_.data() + value_begin_[row];
   for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += D)
@@ -136,6 +205,14 @@ inline void DelassusOperator::visitRow(int i, Visitor visit) const
       visit(column, value + column, static_cast<int>(dense_.cols()));
     return;
   }
+  if (is_matrix_free_)
+    throwMatrixFree();
+  visitHalfRow(i, visit);
+}
+
+template <typename Visitor>
+inline void DelassusOperator::visitHalfRow(int i, Visitor visit) const
+{
   const auto row = static_cast<std::size_t>(i);
   const int d = dimension(i);
   const double* value = values_.data() + value_begin_[row];

@@ -6,31 +6,35 @@
  *   M = C C^T,   x = C^T v,   Z = H C^-T (rows x nv),   A = G C^-T (nb x nv),   g = C^-1 f
  *   x = -g + Z^T r + A^T lambda,    u = Z x + w,    A x + b = 0
  * Without bilaterals: W = Z Z^T, q = w - Z g. Each law's rows of Z have the few columns on the elimination-tree paths
- * of its bodies; only those are formed and multiplied. With bilaterals: A^T = Q R E (column-pivoted QR, rank k <= nb;
- * redundant rows are the dependent columns), N = I - Q Q^T x = N (Z^T r - g) + Q y,  R_1^T y = -(E b)_1     so    W =
- * (Z N)(Z N)^T,  q = w + Z (Q y - N g) that is, the Schur complement written without ever squaring the condition of A.
- * lambda is the least-norm one of R E lambda = y + Q^T (g - Z^T r).
+ * of its bodies; only those are formed and multiplied, and only when W is wanted (see OperatorKind). With bilaterals: E
+ * A = L Q^T (orthogonal_rows.h, rank k <= nb; redundant rows are the dependent ones), N = I - Q Q^T, x = N (Z^T r - g)
+ * + Q y,   L_1 y = -(E b)_1     so    W = (Z N)(Z N)^T,   q = w + Z (Q y - N g) that is, the Schur complement written
+ * without ever squaring the condition of A. lambda is the least-norm one of A^T lambda = Q (y + Q^T (g - Z^T r)). Q is
+ * found loop by loop: bilateral rows that share no velocity in A have factors of their own, and a law touches all
+ * velocities of the loops it touches, no others.
  *
  * Sizes: nv velocities, nb bilateral rows. Sources: Cadoux (2009), (1.34), (2.12); the projector form is the null-space
  * method of Benzi, Golub, Liesen (2005), section 6. Inconsistent redundant rows are left to the residual to report.
  */
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <vector>
 
 #include "frictional_contact_sim/problem/delassus_problem.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
 #include "frictional_contact_sim/problem/mass_factor.h"
+#include "frictional_contact_sim/problem/orthogonal_rows.h"
 
 namespace frictional_contact_sim
 {
 class DelassusReduction
 {
 public:
-  /** @brief Reduces; allocates only when a size or a pattern differs from the last call's (with bilaterals also the
-   *  small workspaces of Eigen's QR).
-   *  @throws std::invalid_argument when M is not positive definite */
-  void compute(const IncrementalProblem& problem);
+  /**
+   * @brief Reduces; allocates only when a size or a pattern differs from the last call's.
+   * @param kind how W is kept; MATRIX_FREE never forms it
+   * @throws std::invalid_argument when M is not positive definite
+   */
+  void compute(const IncrementalProblem& problem, OperatorKind kind = OperatorKind::AUTOMATIC);
 
   /** @brief The local problem of the last compute(). */
   const DelassusProblem& problem() const { return local_; }
@@ -51,43 +55,57 @@ private:
   struct Pair
   {
     int i, j;  ///< j <= i
+    bool same;  ///< both laws touch the same velocities
     double *lower, *upper;  ///< where W_ij and W_ji go
+  };
+  /// Bilateral rows that share velocities, and those velocities (permuted, ascending).
+  struct Loop
+  {
+    std::vector<int> rows, velocities;
+    OrthogonalRows factor;
+    Eigen::VectorXd particular;  ///< y
+    Eigen::VectorXd b, part, coordinates;  ///< workspace
   };
   bool samePattern(const IncrementalProblem& problem) const;
   void analyse(const IncrementalProblem& problem);
+  void findLoops(const SparseRows& G);
   void collectPattern(const SparseRows& matrix, int first_row, int last_row, int mark);
+  void addLoops(std::size_t law, int mark);
   void preparePairs();
+  bool sameVelocities(int i, int j) const;
   void computeHalfRows(const IncrementalProblem& problem);
+  void multiplyHalfRows(const Eigen::VectorXd& x, Eigen::VectorXd& rows) const;
   void multiplyPairs();
-  void eliminateBilaterals(const IncrementalProblem& problem);
+  void factorLoops(const IncrementalProblem& problem);
+  void projectHalfRows();
+  void recoverMultipliers(const IncrementalProblem& problem, Solution& solution);
 
   MassFactor factor_;
   DelassusProblem local_;
-  std::vector<int> h_outer_, h_inner_;  ///< pattern of the last H
+  OperatorKind kind_ = OperatorKind::AUTOMATIC;
+  std::vector<int> h_outer_, h_inner_, g_outer_, g_inner_;  ///< patterns of the last H and G
   std::vector<LawType> types_;
   std::vector<int> block_offset_;  ///< laws + 1, first row of each law
   std::vector<int> pattern_begin_;  ///< laws + 1, into pattern_
   std::vector<int> pattern_;  ///< permuted velocities touched by each law, ascending
   std::vector<int> value_begin_;  ///< laws + 1, into half_rows_
-  std::vector<double> half_rows_;  ///< Z, d values a touched velocity
+  std::vector<double> half_rows_;  ///< Z, with bilaterals Z N; d values a touched velocity
   std::vector<Pair> pairs_;
+  std::vector<Loop> loops_;
+  std::vector<int> loop_of_;  ///< nv, the loop a permuted velocity is in, or -1; empty without bilaterals
+  std::vector<int> law_loop_begin_, law_loops_;  ///< loops each law touches
   std::vector<int> flags_;
   std::vector<double> work_;
   Eigen::VectorXd half_force_;  ///< g
   Eigen::VectorXd x_;
   Eigen::VectorXd base_;  ///< x at r = 0
+  Eigen::VectorXd momentum_;
   Eigen::VectorXd step_lengths_;
   Eigen::VectorXd mass_inverse_force_;
+  DelassusOperator unconstrained_;  ///< Z Z^T, with bilaterals only
+  Eigen::MatrixXd gathered_, coupling_;  ///< columns of one law's Z in one loop, and their product with Q
   double free_velocity_ = 0.0;
-  bool bilateral_ = false;
   int rank_ = 0;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
-  Eigen::MatrixXd bilateral_rows_;  ///< A^T, nv x nb
-  Eigen::MatrixXd basis_;  ///< Q, nv x rank
-  Eigen::MatrixXd dense_rows_;  ///< Z N, rows x nv
-  Eigen::MatrixXd gram_;  ///< R R^T, rank x rank
-  Eigen::MatrixXd coupling_;  ///< Z Q, rows x rank
-  Eigen::VectorXd particular_, coefficients_;
 };
 
 /** @brief The local problem of a global one, for tools and tests. */

@@ -32,6 +32,23 @@ namespace frictional_contact_sim
 {
 /** @brief rho_i of every law, as defined above; resized. */
 void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_lengths);
+void computeStepLengths(const DelassusOperator& W, Eigen::VectorXd& step_lengths);
+
+/** @brief What one pass over the laws finds, and E from it. */
+struct LawErrors
+{
+  double worst = 0.0;  ///< max_i |e_i| [m/s]
+  double impulse = 0.0;  ///< max_i |r_i|/rho_i [m/s]
+  double velocity = 0.0;  ///< max(|q|_inf, |u|_inf, 1e-12) [m/s]
+
+  /** @brief E; see lawResidual() for the cap. */
+  double residual(double impulse_cap = std::numeric_limits<double>::infinity()) const;
+};
+
+/** @brief One pass over the laws; arguments as for lawResidual(). */
+LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
+                      const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors = nullptr,
+                      double round_off = 0.0);
 
 /**
  * @brief The local part of E for given u and r, nothing recomputed; no allocation.

@@ -33,6 +33,7 @@ class CadouxBroyden : public Solver
 {
 public:
   explicit CadouxBroyden(const CadouxBroydenOptions& options = {}, std::unique_ptr<ConvexSolver> inner = nullptr);
+  OperatorUse operatorUse() const override { return map_.operatorUse(); }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

@@ -42,6 +42,7 @@ class CadouxFixedPoint : public Solver
 {
 public:
   explicit CadouxFixedPoint(const CadouxOptions& options = {}, std::unique_ptr<ConvexSolver> inner = nullptr);
+  OperatorUse operatorUse() const override { return map_.operatorUse(); }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

@@ -41,6 +41,7 @@ class CadouxNewton : public Solver
 {
 public:
   explicit CadouxNewton(const CadouxNewtonOptions& options = {}, std::unique_ptr<ConvexSolver> inner = nullptr);
+  OperatorUse operatorUse() const override { return OperatorUse::DENSE; }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

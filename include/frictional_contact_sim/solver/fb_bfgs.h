@@ -34,6 +34,7 @@ class FbBfgs : public Solver
 public:
   explicit FbBfgs(const FbBfgsOptions& options = {});
   void setOptions(const FbBfgsOptions& options);
+  OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

@@ -45,6 +45,7 @@ public:
   FixedPoint(std::string name, const FixedPointMap& map, ScaledContacts::Metric metric,
              const FixedPointOptions& options);
   void setOptions(const FixedPointOptions& options);
+  OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

@@ -30,6 +30,7 @@ class Haslinger : public Solver
 {
 public:
   explicit Haslinger(const HaslingerOptions& options = {}, std::unique_ptr<ConvexSolver> inner = nullptr);
+  OperatorUse operatorUse() const override { return inner_->operatorUse(); }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

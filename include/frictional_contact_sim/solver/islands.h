@@ -29,10 +29,13 @@ private:
   int root(int i);
   int uniteDense(const DelassusOperator& W);
   int uniteSparse(const DelassusOperator& W);
+  int uniteMatrixFree(const DelassusOperator& W);
   /** @brief Joins i and j. @return whether they were apart. */
   bool unite(int i, int j);
 
   std::vector<int> parent_;
+  std::vector<int> toucher_;  ///< matrix-free: a law that touches the column of Z, or -1
+  Eigen::RowVectorXd magnitude_;  ///< dense: largest entry of a block row in each column
   std::vector<int> island_;  ///< of a law
   std::vector<int> begin_, members_;  ///< laws, island by island
   std::vector<int> rows_;  ///< of an island

@@ -66,6 +66,7 @@ class LcpLemke : public Solver
 {
 public:
   explicit LcpLemke(const LcpLemkeOptions& options = {});
+  OperatorUse operatorUse() const override { return OperatorUse::DENSE; }
 
 protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;

@@ -46,6 +46,7 @@ public:
   void setOptions(const PortfolioOptions& options);
 
 protected:
+  std::unique_ptr<Solver> sibling() const override;
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:

@@ -17,6 +17,7 @@ struct SolverEntry
   std::unique_ptr<Solver> (*create)();  ///< with default options
   const char* summary;  ///< one line
   const char* reference;  ///< author, year, equation
+  OperatorUse uses;  ///< what it needs of W, as create()->operatorUse() says
 };
 
 /** @brief All methods, in the order of the README's table. */

@@ -66,6 +66,7 @@ public:
   static constexpr int DENSE_LIMIT = 120;
 
 protected:
+  std::unique_ptr<Solver> sibling() const override;
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:

@@ -43,6 +43,8 @@ struct StoppingOptions
   double time_limit =
       0.0;  ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
   bool split_islands = true;  ///< solve islands apart; false only to compare
+  /// How W is kept. MATRIX_FREE: global problems, methods with operatorUse() == PRODUCTS; W is then never formed.
+  OperatorKind operator_kind = OperatorKind::AUTOMATIC;
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -77,7 +79,7 @@ public:
    * does not hold.
    * @param guess start (u is ignored); nullptr = cold start at r = 0
    * @param result overwritten; storage is reused, so a result kept between calls makes the call free of allocation
-   * @throws std::invalid_argument on wrong shapes
+   * @throws std::invalid_argument on wrong shapes, or when the method cannot use stopping().operator_kind
    */
   void solve(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
   /** @brief The same for the global problem: reduces it to the local one, solves, recovers v and lambda. */
@@ -87,6 +89,8 @@ public:
   SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
 
   const std::string& name() const { return name_; }
+  /** @brief What the method needs of W. */
+  virtual OperatorUse operatorUse() const { return OperatorUse::BLOCK_ROWS; }
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
   const StoppingOptions& stopping() const { return stopping_; }
@@ -123,6 +127,7 @@ private:
   void solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot);
   void judge(double residual, double tolerance, SolverResult& result) const;
   double secondsSinceStart() const;
+  void checkOperator(bool global) const;
 
   static constexpr double IMPULSE_CAP = 1e3;
 
@@ -135,6 +140,7 @@ private:
   double criterion_ = 0.0;  ///< stopping criterion of the last answer
   GlobalResidualData global_;
   Solution warm_;
+  DelassusProblem converted_;  ///< a local problem in another storage, when asked for
   std::unique_ptr<DelassusReduction> reduction_;
   std::unique_ptr<IslandWorkspace> islands_;
 };

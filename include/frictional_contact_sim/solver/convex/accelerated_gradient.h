@@ -31,6 +31,7 @@ class AcceleratedGradient : public ConvexSolver
 {
 public:
   explicit AcceleratedGradient(const AcceleratedGradientOptions& options = {});
+  OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
   ConvexResult doSolve(const ConvexProblem& problem, const ConvexBudget& budget, Eigen::VectorXd& r,

@@ -45,6 +45,8 @@ public:
   ConvexSolver& operator=(const ConvexSolver&) = delete;
 
   const std::string& name() const { return name_; }
+  /** @brief What the method needs of W. */
+  virtual OperatorUse operatorUse() const { return OperatorUse::BLOCK_ROWS; }
 
   /**
    * @brief Solves the convex problem.

@@ -34,6 +34,7 @@ class ProjectedGradient : public ConvexSolver
 {
 public:
   explicit ProjectedGradient(const ProjectedGradientOptions& options = {});
+  OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
   ConvexResult doSolve(const ConvexProblem& problem, const ConvexBudget& budget, Eigen::VectorXd& r,

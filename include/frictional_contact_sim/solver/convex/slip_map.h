@@ -33,6 +33,8 @@ class SlipMap
 public:
   explicit SlipMap(std::unique_ptr<ConvexSolver> inner);
   ~SlipMap();
+  /** @brief What the inner solver needs of W. */
+  OperatorUse operatorUse() const;
 
   /** @brief Makes the cone problem; sizes s() to the frictional contacts. */
   void setProblem(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths);

@@ -33,6 +33,7 @@ class SpectralGradient : public ConvexSolver
 {
 public:
   explicit SpectralGradient(const SpectralGradientOptions& options = {});
+  OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
   ConvexResult doSolve(const ConvexProblem& problem, const ConvexBudget& budget, Eigen::VectorXd& r,
