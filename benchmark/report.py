@@ -131,6 +131,7 @@ def thesis_table(rows, target):
     problems = group(rows, target)
     if not problems:
         return "Not measured yet."
+    problems = dict(sorted(problems.items(), key=lambda item: (int(item[1][0]["contacts"]), item[0])))
     solvers = list(dict.fromkeys(row["solver"] for row in rows))
     measure = "thesis" if target.startswith("thesis") else "residual"
     lines = []
@@ -190,13 +191,28 @@ def scaling(rows):
 
 def runs(results):
     lines = []
-    for stage in ("fclib", "families", "random_small", "random_large", "scaling"):
+    for stage in ("fclib", "families", "random_small", "random_large", "conditions", "scaling"):
         path = os.path.join(results, stage + ".stage")
         if os.path.exists(path):
             with open(path) as file:
                 name, full, limit, seconds, date, cores = file.read().strip().split(",")
             lines.append([name, date, cores, f"{limit} s", "yes" if full == "yes" else "no", f"{seconds} s"])
     return table(["stage", "date", "cores", "time limit of a solve", "--full", "took"], lines)
+
+
+def condition_table(tables, target):
+    """{condition: rows} as one table: solved of tried, a line a method."""
+    tables = {condition: rows for condition, rows in tables.items() if rows}
+    if not tables:
+        return "Not measured yet."
+    counts = {}
+    for condition, rows in tables.items():
+        for row in rows:
+            if row["target"] == target and row["ours"] == "1":
+                counts.setdefault(row["solver"], {}).setdefault(condition, []).append(solved(row))
+    lines = [[f"`{solver}`"] + [f"{sum(by.get(c, []))}/{len(by.get(c, []))}" for c in tables]
+             for solver, by in counts.items()]
+    return table(["method"] + [f"condition {condition}" for condition in tables], lines)
 
 
 def count_lines(rows, target):
@@ -225,6 +241,8 @@ def main():
         "CLASSES_LOOSE": class_table(fclib, "0.0001"),
         "TABLE_5_7": thesis_tables([row for row in small if row["ours"] == "1"]),
         "TABLE_5_9": thesis_tables(large),
+        "CONDITIONS": condition_table({"10": small, "1e3": read(arguments.results, "conditions_1e3"),
+                                       "1e6": read(arguments.results, "conditions_1e6")}, "thesis 1e-06"),
         "COUNTS_5_7": count_lines(small, "thesis 1e-06"),
         "COUNTS_5_9": count_lines(large, "thesis 1e-06"),
         "SCALING": scaling(read(arguments.results, "scaling")),

@@ -67,6 +67,8 @@ std::vector<Entry> makeEntries(const DelassusProblem& problem, const Arguments& 
     if (name == "ours")
       for (const SolverEntry& method : solverRegistry())
         more.push_back(ourEntry(problem, method.name));
+    else if (name == "thesis")
+      more = thesisEntries(problem);
     else if (name.rfind("siconos", 0) == 0)
       more = siconosEntries(problem, name == "siconos" ? std::vector<std::string>() : std::vector<std::string>{name});
     else
@@ -100,7 +102,7 @@ void run(Arguments& arguments)
   for (const std::string& text : arguments.targets)
     arguments.measure.targets.push_back(parseTarget(text));
   for (const std::string& name : arguments.solvers)
-    if (name != "ours" && name.rfind("siconos", 0) != 0)
+    if (name != "ours" && name != "thesis" && name.rfind("siconos", 0) != 0)
       createSolver(name);
   const std::vector<std::string> files = collectFiles(arguments.files);
   std::filesystem::create_directories(arguments.output);
@@ -146,9 +148,10 @@ int main(int argc, char** argv)
       "Times our methods and Siconos's on the same local problems from r = 0, CPU time on one core. Each solver's own\n"
       "tolerance is tightened until an independent judge is content; its quickest storage stands for it.");
   app.add_option("--files", arguments.files, "FCLib files or folders of them")->capture_default_str();
-  app.add_option("--solvers", arguments.solvers,
-                 "names of our methods, 'ours' = all of them, 'siconos' = all of theirs, or e.g. 'siconos NSGS'; the "
-                 "first is compared")
+  app.add_option(
+         "--solvers", arguments.solvers,
+         "names of our methods, 'ours' = all of them, 'thesis' = some as the thesis has them, 'siconos' = all of "
+         "theirs, or e.g. 'siconos NSGS'; the first is compared")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--targets", arguments.targets, "residuals E, or thesis:1e-6 for the thesis's (5.1); loose first")

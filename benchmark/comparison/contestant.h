@@ -45,6 +45,15 @@ struct Entry
 Entry ourEntry(const frictional_contact_sim::DelassusProblem& problem, const std::string& solver);
 
 /**
+ * @brief Our methods without what the thesis does not have: what our departures from it are worth.
+ *   thesis AC      no proximal term: plain semismooth Newton with line search
+ *   thesis DS      the step length stays 1/lambda_max(W_ii)
+ *   thesis H-pf    inner projected gradient in the plain metric, at most 250 iterations (its table 5.6)
+ *   thesis NA-pf   the same, starting from s = 0
+ */
+std::vector<Entry> thesisEntries(const frictional_contact_sim::DelassusProblem& problem);
+
+/**
  * @brief All variants of Siconos's solvers for a problem of 2D or 3D Coulomb contacts; none for other laws.
  * @param names keep only these; empty = all
  */

@@ -84,7 +84,11 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
       finding.seconds =
           std::min(finding.seconds, timeSolves(*contestant, finding.tolerance, repeats, time_limit, claimed));
     if (!finding.solved)
+    {
+      for (std::size_t later = t + 1; later < options.targets.size(); ++later)
+        findings[later] = finding;
       return;  // what misses the loose target misses the tight one
+    }
   }
 }
 
