@@ -22,7 +22,6 @@ struct IslandSlot
   long last_used = 0;
   DelassusProblem problem;
   Eigen::VectorXd step_lengths;
-  Eigen::VectorXd velocity;
   SolverResult result;
   std::unique_ptr<Solver> method;  ///< a sibling of the solver; nullptr: the solver itself
 };
@@ -34,8 +33,12 @@ struct IslandWorkspace
 
   /** @brief The slot of this shape, or one to be used for it. */
   IslandSlot& slot(int rows, std::size_t blocks);
-  /** @brief Copies the island's laws, q, r, u and step lengths to its slot. */
-  IslandSlot& gather(const DelassusProblem& whole, const Eigen::VectorXd& r);
+  /** @brief Copies the island's laws, q, r and step lengths to its slot. */
+  IslandSlot& gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& r);
+  /** @brief Largest |q| of the island, at least a small share of the whole's [m/s]. */
+  double scale(const DelassusProblem& whole, double whole_free_velocity) const;
+  /** @brief Whether the guess is good enough for the island, from the errors and impulses of its laws alone. */
+  bool alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& r, double error, double impulse) const;
   /** @brief Writes the slot's impulses to r. */
   void scatter(const DelassusProblem& whole, const IslandSlot& slot, Eigen::VectorXd& r) const;
 
@@ -45,6 +48,7 @@ struct IslandWorkspace
   std::vector<IslandSlot> slots;
   long clock = 0;
   Eigen::VectorXd velocity;  ///< u of the guess
+  Eigen::VectorXd errors;  ///< of the laws at the guess [m/s]
   Eigen::VectorXd step_lengths;  ///< of the whole
 };
 

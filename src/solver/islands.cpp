@@ -33,7 +33,9 @@ int Islands::uniteDense(const DelassusOperator& W)
   for (int i = 0; i < blocks && count > 1; ++i)
   {
     // Whole block rows, so that W_ij is seen from i and W_ji from j.
-    magnitude_ = W.dense().middleRows(W.offset(i), W.dimension(i)).cwiseAbs().colwise().maxCoeff();
+    magnitude_ = W.dense().row(W.offset(i)).cwiseAbs();
+    for (int row = W.offset(i) + 1; row < W.offset(i + 1); ++row)
+      magnitude_ = magnitude_.cwiseMax(W.dense().row(row).cwiseAbs());
     for (int j = 0; j < blocks && count > 1; ++j)
     {
       bool coupled = false;

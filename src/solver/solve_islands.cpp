@@ -82,17 +82,13 @@ IslandSlot& IslandWorkspace::slot(int rows, std::size_t blocks)
   return slot;
 }
 
-IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, const Eigen::VectorXd& r)
+IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& r)
 {
-  int rows = 0;
-  for (const int i : laws)
-    rows += whole.W.dimension(i);
   IslandSlot& slot = this->slot(rows, laws.size());
   DelassusProblem& part = slot.problem;
   part.laws.resize(laws.size());
   part.q.resize(rows);
   slot.result.solution.r.resize(rows);
-  slot.velocity.resize(rows);
   slot.step_lengths.resize(static_cast<Eigen::Index>(laws.size()));
   int row = 0;
   for (std::size_t k = 0; k < laws.size(); ++k)
@@ -101,7 +97,6 @@ IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, const Eigen::V
     part.laws[k] = whole.laws[static_cast<std::size_t>(laws[k])];
     part.q.segment(row, dimension) = whole.q.segment(first, dimension);
     slot.result.solution.r.segment(row, dimension) = r.segment(first, dimension);
-    slot.velocity.segment(row, dimension) = velocity.segment(first, dimension);
     slot.step_lengths[static_cast<Eigen::Index>(k)] = step_lengths[laws[k]];
     row += dimension;
   }
@@ -119,6 +114,30 @@ void IslandWorkspace::scatter(const DelassusProblem& whole, const IslandSlot& sl
   }
 }
 
+double IslandWorkspace::scale(const DelassusProblem& whole, double whole_free_velocity) const
+{
+  double largest = QUIET_SHARE * whole_free_velocity;
+  for (const int i : laws)
+    for (int row = whole.W.offset(i); row < whole.W.offset(i + 1); ++row)
+      largest = std::max(largest, std::abs(whole.q[row]));
+  return largest;
+}
+
+bool IslandWorkspace::alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& r, double error,
+                                    double impulse) const
+{
+  for (const int i : laws)
+  {
+    // Written so that a NaN is no answer.
+    if (!(errors[i] <= error))
+      return false;
+    for (int row = whole.W.offset(i); row < whole.W.offset(i + 1); ++row)
+      if (!(std::abs(r[row]) <= impulse * step_lengths[i]))
+        return false;
+  }
+  return true;
+}
+
 void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot)
 {
   if (slot.method == nullptr)
@@ -127,15 +146,15 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   method.stopping_ = stopping_;
   method.start_ = start_;
   method.deadline_ = deadline;
-  method.free_velocity_ = std::max(slot.problem.q.lpNorm<Eigen::Infinity>(), QUIET_SHARE * whole_free_velocity);
+  method.free_velocity_ = islands_->scale(whole, whole_free_velocity);
   method.step_lengths_ = slot.step_lengths;
+  std::vector<int>& position = islands_->position;
+  for (std::size_t i = 0; i < islands_->laws.size(); ++i)
+    position[static_cast<std::size_t>(islands_->laws[i])] = static_cast<int>(i);
+  slot.problem.W.assignBlocks(whole.W, islands_->laws, position, slot.problem.laws, stopping_.operator_kind);
+  for (const int i : islands_->laws)
+    position[static_cast<std::size_t>(i)] = -1;
   SolverResult& result = slot.result;
-  if (method.residual(slot.problem, slot.velocity, result.solution.r) <= stopping_.tolerance)
-  {
-    result.status = SolverStatus::CONVERGED;
-    return;
-  }
-  slot.problem.W.assignBlocks(whole.W, islands_->laws, islands_->position, slot.problem.laws, stopping_.operator_kind);
   method.doSolve(slot.problem, result);
   if (!result.solution.r.allFinite())
   {
@@ -148,36 +167,37 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
 void Solver::solveIslands(const DelassusProblem& problem, SolverResult& result)
 {
   IslandWorkspace& work = *islands_;
-  // The velocities of the guess: an island that is already solved is not even copied, so that a scene at rest with a
-  // warm start costs one product.
+  // What the guess is worth, law by law: an island that is already solved is not even copied, so that a scene at rest
+  // with a warm start costs one product.
   problem.W.apply(result.solution.r, work.velocity);
   work.velocity += problem.q;
+  measureLaws(problem.laws, step_lengths_, free_velocity_, work.velocity, result.solution.r, &work.errors);
   work.step_lengths = step_lengths_;
   work.position.assign(problem.laws.size(), -1);
-  const double free_velocity = free_velocity_;
+  const double whole_free_velocity = free_velocity_;
   const double whole_deadline = deadline_;
   int rows_left = problem.W.rows();
   result.status = SolverStatus::CONVERGED;
   for (int k = 0; k < work.islands.count(); ++k)
   {
     work.islands.laws(k, work.laws);
-    IslandSlot& slot = work.gather(problem, result.solution.r);
+    const int rows = work.islands.rows(k);
+    const int rows_before = rows_left;
+    rows_left -= rows;
+    const double scale = work.scale(problem, whole_free_velocity);
+    if (work.alreadySolved(problem, result.solution.r, stopping_.tolerance * scale, IMPULSE_CAP * scale))
+      continue;
+    IslandSlot& slot = work.gather(problem, rows, result.solution.r);
     clear(slot.result);
-    for (std::size_t i = 0; i < work.laws.size(); ++i)
-      work.position[static_cast<std::size_t>(work.laws[i])] = static_cast<int>(i);
     // A time limit is shared by rows, what one island leaves goes to the later ones: a hard one does not starve them.
     const double now = whole_deadline > 0.0 ? secondsSinceStart() : 0.0;
-    const double deadline =
-        whole_deadline > 0.0 ? now + std::max(whole_deadline - now, 0.0) * slot.rows / rows_left : 0.0;
-    solveIsland(problem, free_velocity, deadline, slot);
-    rows_left -= slot.rows;
-    for (const int i : work.laws)
-      work.position[static_cast<std::size_t>(i)] = -1;
+    const double share = std::max(whole_deadline - now, 0.0) * rows / rows_before;
+    solveIsland(problem, whole_free_velocity, whole_deadline > 0.0 ? now + share : 0.0, slot);
     work.scatter(problem, slot, result.solution.r);
     merge(work.laws.front(), slot.result, result);
   }
   step_lengths_ = work.step_lengths;
-  free_velocity_ = free_velocity;
+  free_velocity_ = whole_free_velocity;
   deadline_ = whole_deadline;
 }
 

@@ -24,6 +24,8 @@ public:
   /** @brief Laws of the k-th island in ascending order; islands are ordered by rows, smallest first, then by first law.
    */
   void laws(int k, std::vector<int>& laws) const;
+  /** @brief Rows of the k-th island. */
+  int rows(int k) const { return rows_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])]; }
 
 private:
   int root(int i);
