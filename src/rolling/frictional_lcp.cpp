@@ -7,6 +7,12 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+/// Natural-map residual that counts as zero, in units of order one (F_TT^-1 may be 1e3 there).
+constexpr double ROUND_OFF = 1e-10;
+}  // namespace
+
 const char* toString(NodeState state)
 {
   switch (state)
@@ -85,6 +91,10 @@ FrictionalContact FrictionalLcp::solve(const Eigen::VectorXd& d_N, const Eigen::
   contact.status = lcp.status;
   contact.pivots = lcp.pivots;
   contact.residual = lcpResidual(M_scaled_, b, lcp.x);
+  // Without friction gamma is zero throughout; the path may then end on a ray with the artificial variable at zero. A
+  // vanishing natural map proves the answer whatever the path said.
+  if (contact.residual <= ROUND_OFF)
+    contact.status = LcpStatus::SOLVED;
   contact.r_N = lcp.x.head(n) * (depth / unit_);
   contact.y_N = lcp.y.head(n) * depth;
   contact.y_T = (lcp.x.segment(n, n) - lcp.x.tail(n)) * depth;
@@ -190,17 +200,23 @@ LoadedContact solveForLoads(const FrictionalLcp& lcp, const Eigen::VectorXd& gap
     else
       step[0] = -missing[0] / derivative(0, 0);
     FrictionalContact trial;
+    bool accepted = false;
     for (double factor = 1.0; factor > 1e-4; factor *= 0.5)
     {
       trial = evaluate(answer.approach + factor * step[0], answer.shift + factor * step[1]);
-      if (trial.status == LcpStatus::SOLVED && (derivative(0, 0) == 0.0 || error(trial).norm() < missing.norm()))
+      // Once everything slips the shift has no say any more and there is no way back: such steps are too long.
+      const bool keeps_stick =
+          !frictional || std::count(trial.states.begin(), trial.states.end(), NodeState::STICK) > 0;
+      if (trial.status == LcpStatus::SOLVED && keeps_stick &&
+          (derivative(0, 0) == 0.0 || error(trial).norm() < missing.norm()))
       {
         answer.approach += factor * step[0];
         answer.shift += factor * step[1];
+        accepted = true;
         break;
       }
     }
-    if (!(error(trial).norm() < missing.norm()) && derivative(0, 0) != 0.0)
+    if (!accepted)
       break;
     answer.contact = trial;
   }

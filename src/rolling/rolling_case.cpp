@@ -127,19 +127,21 @@ RollingRun runOne(const RollingCase& study, double friction, double lower_modulu
   const FrictionalLcp lcp(run.flexibility, Eigen::VectorXd::Constant(1, friction));
   const double Q = study.motion == Motion::STATIC && study.load ? study.load_share * friction * *study.load : 0.0;
   press(study, lcp, Q, hooks, run);
+  const bool pressed = run.converged;
+  const double pressed_approach = run.approach;
   if (study.motion == Motion::STATIC)
     run.slip = slipVelocity(run.flexibility.x, run.contact.u_T, study.creepage, study.direction);
   else if (run.converged)
     rollOn(study, lcp, hooks, run);
   run.contact_seconds = processSeconds() - start;
-  if (study.curve_points > 0 && run.converged && friction > 0.0)
+  if (study.curve_points > 0 && pressed && friction > 0.0)
   {
     CreepCurveOptions options;
     options.points = study.curve_points;
     options.progress = hooks.progress;
     options.interrupted = hooks.interrupted;
     const HertzLine hertz = hertzLine(*study.load, study.radius, run.materials.reducedModulus());
-    run.curve = computeCreepCurve(run.flexibility, friction, *study.load, run.gap, run.approach,
+    run.curve = computeCreepCurve(run.flexibility, friction, *study.load, run.gap, pressed_approach,
                                   carterSaturation(hertz, study.radius, friction), options);
   }
   return run;

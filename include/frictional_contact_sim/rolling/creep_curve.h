@@ -5,13 +5,14 @@
  *
  * xi = |slip speed|/rolling speed [-] against |Q|/(mu P) [-]: from (0, 0) to the first creepage at which everything
  * slips, (xi_s, 1). Carter's curve for equal materials. Unequal materials roll freely (Q = 0) at a creepage of their
- * own, since pressure stretches one surface more than the other; xi counts from there and the two directions differ by
- * little. The curve is that of Q on the upper body pointing left (xi > 0); `other_direction` holds the largest
- * difference of |Q|/(mu P) to the other one.
+ * own, since pressure stretches one surface more than the other; xi counts from there, and braking and driving differ.
+ * The curve is that of Q on the upper body pointing left (xi > 0); `other_direction` holds the largest difference of
+ * |Q|/(mu P) to the other one.
  *
  *   creep_curve:
- *     friction, reference_load [N/m], young_modulus [Pa], poisson_ratio, radius [m], creepage: [0, ...], traction: [0,
- * ..., 1]
+ *     friction, reference_load [N/m], young_modulus [Pa], poisson_ratio, radius [m]
+ *     creepage: [0, ...]
+ *     traction: [0, ..., 1]
  *
  * Between reference_load P0 and another load P the abscissa scales with the contact width: a ~ sqrt(P).
  */
