@@ -6,9 +6,15 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+constexpr int FULL_STEPS = 6;  ///< Newton iterations before steps are halved: only curves with convex parts need more
+}  // namespace
+
 void StepAssembly::startCreep(size_t points)
 {
   creep_points_.assign(points, CreepPoint{});
+  creep_iterations_ = 0;
 }
 
 void StepAssembly::setCreepNormal(int point, double normal)
@@ -83,11 +89,13 @@ void StepAssembly::addCreep(const ContactPoint& point, const CreepTable& curve, 
 bool StepAssembly::updateCreep(const Solution& solution, double tolerance)
 {
   bool again = false;
+  ++creep_iterations_;
   for (size_t i = 0; i < creep_contacts_.size(); ++i)
   {
     const CreepContact& creep = creep_contacts_[i];
     const ContactRow& contact = contact_rows_[creep.contact];
     CreepPoint& at = creep_points_[contact.point];
+    const double last_slip = at.slip;
     const double traction = -solution.r[contact.row + 1];
     at.known = true;
     at.normal = solution.r[contact.row];
@@ -99,6 +107,8 @@ bool StepAssembly::updateCreep(const Solution& solution, double tolerance)
                               ? std::clamp((at.slip + contact.creep.offset) / contact.creep.compliance, -limit, limit)
                               : traction;
     again = again || std::abs(solved - creepTraction(*creep.curve, contact.friction, at)) > tolerance * limit;
+    if (creep_iterations_ > FULL_STEPS)
+      at.slip = 0.5 * (at.slip + last_slip);
   }
   return again;
 }

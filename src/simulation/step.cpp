@@ -15,7 +15,7 @@ namespace
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always in the problem [m]
 constexpr double BOUNDED_FRACTION = 0.9;  ///< of its effort limit: from here on a servo is solved as a bounded row
 constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
-constexpr int CREEP_ITERATIONS = 20;  ///< Newton iterations of the creep law in a step; two or three are usual
+constexpr int CREEP_ITERATIONS = 40;  ///< Newton iterations of the creep law in a step; two are usual
 constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort limit that is round-off
 }  // namespace
 
@@ -108,9 +108,14 @@ void Simulator::Impl::solveStep(const std::vector<ContactPoint>& points)
       guess.r = result.solution.r;
     solve();
     servos = boundOverloadedServos();
-    creep = !servos && assembly.hasCreep() && !step_failed && creep_iterations++ < CREEP_ITERATIONS &&
+    creep = !servos && assembly.hasCreep() && !step_failed &&
             assembly.updateCreep(result.solution, scenario.stopping.tolerance);
-  } while (servos || creep);
+  } while (servos || (creep && ++creep_iterations < CREEP_ITERATIONS));
+  if (!creep)
+    return;
+  result.status = SolverStatus::MAX_ITERATIONS;
+  result.message = "the creep law was not met on its tangents";
+  step_failed = true;
 }
 
 const ContactState* Simulator::Impl::lastContact(std::uint64_t id) const

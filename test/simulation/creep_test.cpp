@@ -157,6 +157,38 @@ TEST(CreepTest, StepSizeDoesNotMatterInTheSteadyState)
   }
 }
 
+TEST(CreepTest, CurvesWithFlatAndConvexPartsAreMetToo)
+{
+  auto table = std::make_shared<CreepTable>();
+  table->friction = 0.3;
+  table->reference_load = 1000.0;
+  table->creepage = {0.0, 1e-5, 2e-5, 5e-5, 1e-4};
+  table->traction = {0.0, 0.05, 0.5, 0.5, 1.0};
+  Scenario scene = loadScenarioFile(ROOT + "/config/scenarios/rolling_wheel.yaml");
+  scene.stopping.tolerance = 1e-13;
+  for (auto& [between, material] : scene.materials.pairs)
+    material.creep = table;
+  Simulator simulator(scene);
+  run(simulator, 200);
+  const double rim = RADIUS * jointVelocity(simulator, "axle");
+  const double speed = jointVelocity(simulator, "drive");
+  EXPECT_NEAR(2.0 * (rim - speed) / (rim + speed), 6e-5, 1e-9);  // 0.6 lies on the last segment
+}
+
+TEST(CreepTest, StartsFromRestAsARollingWheelDoes)
+{
+  Scenario scene = loadScenarioFile(ROOT + "/config/scenarios/rolling_wheel.yaml");
+  scene.stopping.tolerance = 1e-13;
+  scene.bodies[0].joints.clear();
+  scene.bodies[0].wrenches.clear();
+  Simulator simulator(scene);
+  run(simulator, 500);
+  // Torque over radius moves fork, wheel, the wheel's turning inertia and the carriage of 0.1 kg; creep costs 1e-4.
+  const double mass = LOAD / GRAVITY + 0.1 + 0.01 / (RADIUS * RADIUS);
+  EXPECT_NEAR(jointVelocity(simulator, "drive"), 0.5 * 9.0 / mass, 1e-4);
+  EXPECT_LT(jointVelocity(simulator, "drive"), RADIUS * jointVelocity(simulator, "axle"));
+}
+
 TEST(CreepTest, LockedWheelSlidesWithCoulombsFriction)
 {
   Scenario scene = plateScene(1.0, 0.0);
@@ -296,6 +328,22 @@ TEST(CreepTest, StepsDoNotAllocate)
   for (int i = 0; i < 100; ++i)
     simulator.step();
   EXPECT_EQ(counter.count(), 0);
+}
+
+TEST(CreepCurveFileTest, IsReadWithTheKeysTheRollingToolWrites)
+{
+  const std::string path = testing::TempDir() + "tool_curve.yaml";
+  std::ofstream(path) << "creep_curve:\n  friction: 0.25\n  reference_load: 500  # N per metre of width\n"
+                         "  young_modulus: 94500\n  poisson_ratio: 0.1\n  radius: 0.1\n"
+                         "  creepage: [0, 1e-3, 2e-3, 3e-3]\n  traction: [0, 0.75, 1, 1]\n";
+  const Scenario scene = creepScene("creep, restitution: 0.2, curve: " + path);
+  const Material& material = scene.materials.pairs.at({"plate", "wheel"});
+  EXPECT_EQ(material.friction, 0.25);
+  EXPECT_EQ(material.restitution, 0.2);
+  EXPECT_EQ(material.creep->reference_load, 500.0);
+  EXPECT_DOUBLE_EQ(material.creep->value(0.5e-3), 0.375);
+  EXPECT_EQ(material.creep->value(2.5e-3), 1.0);
+  EXPECT_NEAR(material.creep->slope(1.5e-3), 250.0, 1e-9);
 }
 
 struct BadCurve

@@ -134,6 +134,7 @@ private:
   std::vector<std::pair<int, Eigen::Vector3d>> columns_b_;
   std::vector<std::vector<int>> mass_columns_;  ///< tree pattern of M, row by row
   bool creep_ = false;
+  int creep_iterations_ = 0;  ///< in this step
   std::vector<RollingShape> rolling_shapes_;  ///< one a shape handle
   std::vector<CreepPoint> creep_points_;  ///< one a detected point, kept over the iterations of a step
   std::vector<CreepContact> creep_contacts_;
