@@ -180,6 +180,14 @@ void readLocal(const std::string& path, const FclibShape& shape, FclibProblem& r
   validate(problem);
 }
 
+/** libfclib ends the process on a null pointer, which the data of something empty is. */
+template <typename Number>
+Number* neverNull(Number* data)
+{
+  static Number nothing{};
+  return data != nullptr ? data : &nothing;
+}
+
 /** Compressed rows handed to libfclib; keeps the arrays alive. */
 class StoredMatrix
 {
@@ -190,9 +198,9 @@ public:
     matrix_.nzmax = static_cast<int>(values_.nonZeros());
     matrix_.m = static_cast<int>(values_.rows());
     matrix_.n = static_cast<int>(values_.cols());
-    matrix_.p = values_.outerIndexPtr();
-    matrix_.i = values_.innerIndexPtr();
-    matrix_.x = values_.valuePtr();
+    matrix_.p = neverNull(values_.outerIndexPtr());
+    matrix_.i = neverNull(values_.innerIndexPtr());
+    matrix_.x = neverNull(values_.valuePtr());
     matrix_.nz = -2;
     matrix_.info = nullptr;
   }
@@ -253,8 +261,8 @@ bool writeSolution(const std::string& path, EncodedSolution* solution)
     return true;
   fclib_solution stored{};
   stored.v = solution->v.data();
-  stored.u = solution->u.data();
-  stored.r = solution->r.data();
+  stored.u = neverNull(solution->u.data());
+  stored.r = neverNull(solution->r.data());
   stored.l = solution->lambda.data();
   return fclib_write_solution(&stored, path.c_str()) == 1;
 }
@@ -291,10 +299,10 @@ void writeFclib(const std::string& path, const IncrementalProblem& problem, cons
   stored.M = M.get();
   stored.H = H.get();
   stored.G = encoded.problem.bilaterals() > 0 ? G.get() : nullptr;
-  stored.mu = encoded.friction.data();
-  stored.f = f.data();
-  stored.b = encoded.problem.b.data();
-  stored.w = encoded.problem.w.data();
+  stored.mu = neverNull(encoded.friction.data());
+  stored.f = neverNull(f.data());
+  stored.b = neverNull(encoded.problem.b.data());
+  stored.w = neverNull(encoded.problem.w.data());
   stored.spacedim = encoded.dimension;
   stored.info = texts.get();
   writeBeside(path,
@@ -317,9 +325,9 @@ void writeFclib(const std::string& path, const DelassusProblem& problem, const F
   stored.W = W.get();
   stored.V = bilateral ? V.get() : nullptr;
   stored.R = bilateral ? R.get() : nullptr;
-  stored.mu = encoded.friction.data();
-  stored.q = encoded.q.data();
-  stored.s = encoded.s.data();
+  stored.mu = neverNull(encoded.friction.data());
+  stored.q = neverNull(encoded.q.data());
+  stored.s = neverNull(encoded.s.data());
   stored.spacedim = encoded.dimension;
   stored.info = texts.get();
   writeBeside(path,

@@ -20,7 +20,8 @@ struct Curvature
   double correlation = 0.0;
 };
 
-Curvature curvature(const Eigen::VectorXd& dz, const Eigen::VectorXd& dl, const Eigen::VectorXd& metric)
+template <typename Impulse, typename Velocity>
+Curvature curvature(const Impulse& dz, const Velocity& dl, const Eigen::VectorXd& metric)
 {
   const double product = dz.dot(dl);
   const double z = dz.cwiseQuotient(metric).dot(dz);
@@ -102,7 +103,9 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
   if (loop.record(residual(problem, u_, y_), y_))
     return;
   // The multiplier of the start is u~ of the guess, zero for a cold one.
-  lambda_ = y_.isZero(0.0) ? Eigen::VectorXd::Zero(y_.size()).eval() : u_;
+  lambda_ = u_;
+  if (y_.isZero(0.0))
+    lambda_.setZero();
   lambda_hat_ = lambda_;
   r_ = y_;
   x_ = -metric_.cwiseProduct(lambda_) / penalty_;

@@ -130,18 +130,18 @@ void FbSteps::assemble(const FbSystem& system)
 
 bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
 {
-  d = -system.value();
+  product_ = -system.value();
   if (dense_)
   {
     lu_.compute(jacobian_);
-    d = lu_.solve(d);
+    d = lu_.solve(product_);
   }
   else
   {
     sparse_->lu.compute(sparse_->jacobian);
     if (sparse_->lu.info() != Eigen::Success)
       return false;
-    d = sparse_->lu.solve(d);
+    d = sparse_->lu.solve(product_);
   }
   return d.allFinite();
 }
@@ -163,7 +163,8 @@ bool FbSteps::leastSquares(const FbSystem& system, double lambda, Eigen::VectorX
     normal_ready_ = true;
     if (llt_.info() != Eigen::Success)
       return false;
-    d = -llt_.solve(gradient_);
+    d = llt_.solve(gradient_);
+    d = -d;
     product_.noalias() = jacobian_ * d;
   }
   else

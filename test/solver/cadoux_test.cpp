@@ -26,21 +26,11 @@ namespace
 const std::vector<std::string> METHODS = {"cadoux_fixed_point", "cadoux_newton",  "cadoux_broyden",
                                           "haslinger",          "interior_point", "admm"};
 
-/**
- * One contact, W = I, q = (-1, -2, 0), mu = 1/2: slides with r = (1, 1/2, 0), u = (0, -3/2, 0).
- * By hand: r(s) = P_K(1 - s/2, 2, 0) = ((2 - s/2)/1.25) (1, 1/2, 0), so F(s) = 2 - (2 - s/2)/2.5 = 1.2 + 0.2 s.
- */
-DelassusProblem slidingContact()
-{
-  return localProblem(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-1, -2, 0), {{LawType::COULOMB_3D, 0.5}});
-}
-
 /// Exact here: with W = I one projected gradient step solves the convex problem.
 std::unique_ptr<ConvexSolver> exactInner()
 {
   return std::make_unique<ProjectedGradient>();
 }
-
 
 template <typename Method>
 Eigen::VectorXd impulseAfter(Method& solver, int iterations)
@@ -83,6 +73,14 @@ TEST(CadouxNewtonTest, OneStepFromTheAffineMapIsExact)
   const Eigen::VectorXd step = cadouxNewtonStep(problem, map, s, 1e-10);
   ASSERT_EQ(step.size(), 1);
   EXPECT_NEAR(step[0], -0.5, 1e-14);
+}
+
+TEST(CadouxNewtonTest, IteratesAreNewtonsOnTheFixedPoint)
+{
+  // s_0 = 2: r_1 = r(2); Newton on the affine F - s gives s_1 = 3/2, the solution.
+  CadouxNewton solver({}, exactInner());
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(0.8, 0.4, 0)).norm(), 1e-14);
+  EXPECT_LT((impulseAfter(solver, 2) - Eigen::Vector3d(1, 0.5, 0)).norm(), 1e-14);
 }
 
 TEST(CadouxBroydenTest, SecondUpdateIsTheSecant)
@@ -188,6 +186,16 @@ TEST(OuterLoopsTest, ConvergeFromTheStartOfExampleD2)
 {
   for (const std::string& name : METHODS)
     expectConvergenceFromExampleD2(name, 2000);
+}
+
+TEST(InteriorPointTest, FirstIterateByHand)
+{
+  // Cold: s = |q_T| = 2, c = (0, -2, 0), x = (1, 0, 0), z = (4, 0, 0), so r = (2, 0, 0), N = 1/2, lambda = (2, 0, 0)
+  // and A = diag(1/2, 1, 1): the matrix is I + 4 A^2 = diag(2, 5, 5).
+  //   predictor  dr = (-2, 2, 0) / diag = (-1, 2/5, 0), dx = (-1, 4/5, 0), dz = (-1, -4/5, 0): t_a = 10/9, sigma = 0
+  //   corrector  lambda \ (-4 - (1 - 0.64), 0, 0) = (-2.18, 0, 0): dr = (-2.18, 2, 0) / diag, a whole step
+  InteriorPoint solver;
+  EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(0.91, 0.4, 0)).norm(), 1e-12);
 }
 
 TEST(InteriorPointTest, ReachesTenDigitsOnRedundantContacts)

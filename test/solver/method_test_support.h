@@ -43,6 +43,15 @@ inline DelassusProblem twoCoupledContacts()
   return localProblem(W, q, {{LawType::COULOMB_3D, 0.4}, {LawType::COULOMB_3D, 0.9}});
 }
 
+/**
+ * One contact, W = I, q = (-1, -2, 0), mu = 1/2: slides with r = (1, 1/2, 0), u = (0, -3/2, 0).
+ * By hand: r(s) = P_K(1 - s/2, 2, 0) = ((2 - s/2)/1.25) (1, 1/2, 0), so F(s) = 2 - (2 - s/2)/2.5 = 1.2 + 0.2 s.
+ */
+inline DelassusProblem slidingContact()
+{
+  return localProblem(Eigen::Matrix3d::Identity(), Eigen::Vector3d(-1, -2, 0), {{LawType::COULOMB_3D, 0.5}});
+}
+
 /// Jacobian by central differences; error of order h^2 = 1e-12 and round-off 1e-16 / h = 1e-10.
 inline Eigen::MatrixXd numericalJacobian(const VectorFunction& f, const Eigen::VectorXd& x)
 {
@@ -97,17 +106,24 @@ inline bool isHalvedStep(const Eigen::VectorXd& x, const Eigen::VectorXd& direct
   return false;
 }
 
-/// One Newton iteration from r = 0 follows the direction of the given equations, whose Jacobian is taken numerically.
-inline void expectFirstIterateIsNewton(Solver& solver, const DelassusProblem& problem, const VectorFunction& equations)
+/// One Newton iteration from `start` follows the direction of the given equations, whose Jacobian is taken numerically.
+inline void expectFirstIterateIsNewton(Solver& solver, const DelassusProblem& problem, const VectorFunction& equations,
+                                       const Eigen::VectorXd& start)
 {
   solver.setStopping(stopAfter(1, 1e-14));
-  const SolverResult result = solver.solve(problem);
-  EXPECT_EQ(result.status, SolverStatus::MAX_ITERATIONS);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(problem.q.size());
-  const Eigen::VectorXd direction = -numericalJacobian(equations, zero).partialPivLu().solve(equations(zero));
+  Solution guess;
+  guess.r = start;
+  const SolverResult result = solver.solve(problem, &guess);
+  EXPECT_EQ(result.iterations, 1);
+  const Eigen::VectorXd direction = -numericalJacobian(equations, start).partialPivLu().solve(equations(start));
   // 1e-5: the proximal term of 1e-6 and the differences, times the condition of a problem of order one.
-  EXPECT_TRUE(isHalvedStep(result.solution.r, direction, 1e-5))
-      << result.solution.r.transpose() << " against " << direction.transpose();
+  EXPECT_TRUE(isHalvedStep(result.solution.r - start, direction, 1e-5))
+      << (result.solution.r - start).transpose() << " against " << direction.transpose();
+}
+
+inline void expectFirstIterateIsNewton(Solver& solver, const DelassusProblem& problem, const VectorFunction& equations)
+{
+  expectFirstIterateIsNewton(solver, problem, equations, Eigen::VectorXd::Zero(problem.q.size()));
 }
 
 /**

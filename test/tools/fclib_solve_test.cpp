@@ -185,7 +185,7 @@ TEST_F(FclibSolveTest, OutputMustNotBeTheFileAndMustBeWritable)
 TEST_F(FclibSolveTest, ArgumentsOutOfTheirRangeAreRefusedWithIt)
 {
   const std::string path = localFile();
-  expectRefused(solve(path + " --repeat 0"), "range [1 - 1000000]");
+  expectRefused(solve(path + " --repeat 0"), "not in range 1 to 1000000");
   expectRefused(solve(path + " --repeat many"), "--repeat");
   expectRefused(solve(path + " --tolerance 0"), "tolerance is 0");
   expectRefused(solve(path + " --tolerance nan"), "tolerance is nan");
@@ -283,7 +283,9 @@ TEST_F(FclibSolveTest, SharedFilesAreSolvedAndTheRollingOneIsRefused)
   {
     const fs::path path = sharedFolder() / (std::string(name) + ".hdf5");
     if (fs::exists(path))
+    {
       EXPECT_EQ(solve(path.string()).code, 0) << name;
+    }
   }
   const fs::path rolling = sharedFolder() / "Chute-ndof-768-nc-4-3.hdf5";
   if (fs::exists(rolling))
