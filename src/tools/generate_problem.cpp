@@ -12,6 +12,7 @@
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/problem/rigid_families.h"
+#include "frictional_contact_sim/problem/rod_family.h"
 #include "tool_support.h"
 
 namespace
@@ -23,6 +24,7 @@ struct Arguments
   std::string output;
   RandomFamilyOptions random;
   RigidFamilyOptions rigid;
+  RodFamilyOptions rods;
   double friction = -1.0;  ///< both ends of the range; negative: not given
   int contacts = 1000;
   int width = 0;
@@ -51,6 +53,16 @@ std::string describe(const RigidFamilyOptions& options)
   return text.str();
 }
 
+std::string describe(const RodFamilyOptions& options)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << "rods " << options.rods << ", pieces " << options.pieces << ", contacts " << options.contacts << ", friction "
+       << options.friction << ", curl " << options.curl << ", spacing " << options.spacing << ", agitation "
+       << options.agitation << ", seed " << options.seed;
+  return text.str();
+}
+
 /** Writes one problem with its verdict and says so in one line. */
 void write(const std::string& path, const IncrementalProblem& problem, const std::string& family,
            const std::string& parameters)
@@ -65,16 +77,18 @@ void write(const std::string& path, const IncrementalProblem& problem, const std
               verdict.c_str());
 }
 
-void writeTable(const std::string& folder, const std::vector<RandomFamilyEntry>& table)
+/** Writes a table of named problems into a folder. */
+template <typename Entry, typename Generate>
+void writeTable(const std::string& folder, const std::vector<Entry>& table, const Generate& generate)
 {
   std::filesystem::create_directories(folder);
   tools::ProgressBar progress(static_cast<long>(table.size()));
   long done = 0;
-  for (const RandomFamilyEntry& entry : table)
+  for (const Entry& entry : table)
   {
     progress.clear();
-    write((std::filesystem::path(folder) / (entry.name + ".hdf5")).string(), randomFamilyProblem(entry.options),
-          entry.name, describe(entry.options));
+    write((std::filesystem::path(folder) / (entry.name + ".hdf5")).string(), generate(entry.options), entry.name,
+          describe(entry.options));
     std::fflush(stdout);
     progress.update(++done);
   }
@@ -105,6 +119,19 @@ void addRigidOptions(CLI::App& command, Arguments& arguments)
       ->capture_default_str();
   command.add_option("--time-step", options.time_step, "[s]")->capture_default_str();
   command.add_option("--tilt", options.tilt, "gravity from the vertical [rad]")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+}
+
+void addRodOptions(CLI::App& command, RodFamilyOptions& options)
+{
+  command.add_option("--rods", options.rods, "m = 3 pieces rods")->capture_default_str();
+  command.add_option("--pieces", options.pieces, "of a rod")->capture_default_str();
+  command.add_option("--contacts", options.contacts, "n")->capture_default_str();
+  command.add_option("--friction", options.friction, "of all contacts [-]")->capture_default_str();
+  command.add_option("--curl", options.curl, "deviation of the curvatures and twists [1/m]")->capture_default_str();
+  command.add_option("--spacing", options.spacing, "between neighbouring roots [m]")->capture_default_str();
+  command.add_option("--agitation", options.agitation, "deviation of the velocities before the step [1/(m s)]")
+      ->capture_default_str();
   command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
 }
 
@@ -156,9 +183,17 @@ int main(int argc, char** argv)
            [&] { write(arguments.output, randomFamilyProblem(arguments.random), "alea", describe(arguments.random)); }),
       arguments.random);
   add("alea-small", "the 15 problems of table 5.1 with fixed seeds", "DIR",
-      [&] { writeTable(arguments.output, smallRandomFamily()); });
+      [&] { writeTable(arguments.output, smallRandomFamily(), randomFamilyProblem); });
   add("alea-large", "the 15 problems of table 5.2 with fixed seeds", "DIR",
-      [&] { writeTable(arguments.output, largeRandomFamily()); });
+      [&] { writeTable(arguments.output, largeRandomFamily(), randomFamilyProblem); });
+  addRodOptions(
+      *add("rods", "super-helices hanging from a moving support, hair-m-n of the thesis", "OUT",
+           [&] { write(arguments.output, rodFamilyProblem(arguments.rods), "hair", describe(arguments.rods)); }),
+      arguments.rods);
+  add("rods-small", "15 problems of the sizes of table 5.3 with fixed seeds", "DIR",
+      [&] { writeTable(arguments.output, smallRodFamily(), rodFamilyProblem); });
+  add("rods-large", "15 problems of the sizes of table 5.4 with fixed seeds", "DIR",
+      [&] { writeTable(arguments.output, largeRodFamily(), rodFamilyProblem); });
   CLI::App* granular =
       add("granular", "balls on a cubic lattice under gravity", "OUT", [&] { writeGranular(arguments); });
   granular->add_option("--contacts", arguments.contacts, "n")->capture_default_str();

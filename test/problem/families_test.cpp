@@ -6,6 +6,7 @@
 
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/problem/rigid_families.h"
+#include "frictional_contact_sim/problem/rod_family.h"
 #include "frictional_contact_sim/solver/registry.h"
 
 using namespace frictional_contact_sim;
@@ -183,4 +184,72 @@ TEST(RigidFamilyTest, TheContactFrameSeesOnlyRelativeMotion)
     const bool floor = bodiesOf(problem, i, 6).size() == 1;
     EXPECT_NEAR(u.segment<3>(3 * i).norm(), floor ? v.head<3>().norm() : 0.0, 1e-15);
   }
+}
+
+TEST(RodFamilyTest, TheTablesAreThoseOfTheThesis)
+{
+  for (const auto& table : {smallRodFamily(), largeRodFamily()})
+  {
+    ASSERT_EQ(table.size(), 15u);
+    for (const RodFamilyEntry& entry : table)
+    {
+      const IncrementalProblem problem = rodFamilyProblem(entry.options);
+      EXPECT_EQ(entry.name.rfind(
+                    "hair-" + std::to_string(problem.velocities()) + "-" + std::to_string(problem.rows() / 3), 0),
+                0u)
+          << entry.name;
+      EXPECT_EQ(problem.w.norm(), 0.0);  // one support: always solvable
+      EXPECT_NO_THROW(validate(problem));
+    }
+  }
+}
+
+TEST(RodFamilyTest, AFarContactMovesAllPiecesAndANearOneOnlyTheFirst)
+{
+  RodFamilyOptions options;
+  options.contacts = 10;
+  const IncrementalProblem problem = rodFamilyProblem(options);
+  for (int contact = 0; contact < options.contacts; ++contact)
+    for (int rod = 0; rod < options.rods; ++rod)
+    {
+      // The columns of a rod that are not zero are those of its first pieces, without a gap.
+      const Eigen::MatrixXd block = Eigen::MatrixXd(problem.H).block(3 * contact, 18 * rod, 3, 18);
+      bool ended = false;
+      for (int piece = 0; piece < 6; ++piece)
+      {
+        const bool moves = block.middleCols<3>(3 * piece).norm() > 0.0;
+        EXPECT_FALSE(ended && moves);
+        ended = ended || !moves;
+      }
+      EXPECT_GT(block.leftCols<3>().norm(), 0.0);
+    }
+}
+
+TEST(RodFamilyTest, StraightRodsSwingAsCantileversWithTheClosedFormInertia)
+{
+  RodFamilyOptions options;
+  options.curl = 0.0;
+  options.pieces = 1;
+  options.contacts = 0;
+  const Eigen::MatrixXd M = Eigen::MatrixXd(rodFamilyProblem(options).M).topLeftCorner(3, 3);
+  const double pi = 3.14159265358979323846;
+  const double length = 0.2, radius = 1e-3, density = 1300.0, step = 1e-3, young = 1e7;
+  const double area = pi * radius * radius, inertia = pi * std::pow(radius, 4) / 4.0;
+  // Constant curvature: deflection s^2/2, slope s; twist turns sections about the axis, polar moment 2 I.
+  const double bending = density * (area * std::pow(length, 5) / 20.0 + inertia * std::pow(length, 3) / 3.0) +
+                         step * step * young * inertia * length;
+  const double twisting =
+      density * 2.0 * inertia * std::pow(length, 3) / 3.0 + step * step * young / 3.0 * 2.0 * inertia * length;
+  // The midpoint rule with 16 points is wrong by less than (1/16)^2 relative to s^4: below 1 %.
+  EXPECT_NEAR(M(1, 1), bending, 0.01 * bending);
+  EXPECT_NEAR(M(2, 2), bending, 0.01 * bending);
+  EXPECT_NEAR(M(0, 0), twisting, 0.01 * twisting);
+  EXPECT_NEAR(M(0, 1), 0.0, 1e-15);
+}
+
+TEST(RodFamilyTest, MoreContactsThanTheRodsHaveIsRefused)
+{
+  RodFamilyOptions options;
+  options.contacts = 1000;
+  EXPECT_THROW(rodFamilyProblem(options), std::invalid_argument);
 }
