@@ -175,14 +175,18 @@ def scaling(rows):
     for solver in dict.fromkeys(row["solver"] for row in rows):
         own = [row for row in rows if row["solver"] == solver]
         for row in own:
-            lines.append([f"`{solver}`", row["contacts"], row["velocities"], row["status"], row["iterations"],
-                          f"{float(row['residual']):.1e}", duration(float(row["reduction_seconds"])),
-                          duration(float(row["seconds"])), f"{float(row['megabytes']):.3g}"])
+            line = [f"`{solver}`", row["contacts"], row["velocities"], row["status"]]
+            if 0.0 < float(row["seconds"]) < 1e9:
+                line += [row["iterations"], f"{float(row['residual']):.1e}", duration(float(row["reduction_seconds"])),
+                         duration(float(row["seconds"])), f"{float(row['megabytes']):.3g}"]
+            else:  # the process was ended from outside
+                line += ["-"] * 5
+            lines.append(line)
         good = [row for row in own if row["status"] == "CONVERGED" and int(row["contacts"]) >= 100]
         times = exponent([(float(row["contacts"]), float(row["seconds"])) for row in good])
         memory = exponent([(float(row["contacts"]), float(row["megabytes"])) for row in good])
         reduction = exponent([(float(row["contacts"]), float(row["reduction_seconds"])) for row in own
-                              if int(row["contacts"]) >= 100 and row["status"] != "CRASHED"])
+                              if int(row["contacts"]) >= 100 and 0.0 < float(row["reduction_seconds"]) < 1e9])
         notes.append(f"`{solver}`: time grows as n^{times}, the reduction alone as n^{reduction}, memory as n^{memory} "
                      f"(least squares in logarithms, converged runs from 100 contacts on).")
     return table(["method", "contacts", "velocities", "status", "iterations", "E", "reduction", "whole solve",

@@ -31,6 +31,7 @@ using namespace comparison;
 
 constexpr int BAD_INPUT = 2;
 constexpr int DENSE_CONTACTS = 300;
+constexpr double KILL_FACTOR = 2.0;  ///< one factorization may outlast the limit: the process is ended then
 constexpr double REPEAT_TIME = 0.5;  ///< short solves are repeated for so long and the least time kept [s]
 
 struct Arguments
@@ -76,6 +77,7 @@ void fill(const Arguments& arguments, const std::string& name, int contacts, Row
   stopping.max_iterations = 1000000;
   stopping.time_limit = arguments.time_limit;
   const double before = residentMemory();
+  limitCpuTime(KILL_FACTOR * arguments.time_limit + 5.0);
   double used = 0.0;
   row.solve = row.reduction = 1e300;
   SolverResult result;
@@ -130,8 +132,11 @@ void run(const Arguments& arguments)
       Row& row = *memory.as<Row>();
       const Ending ending = runIsolated([&] { fill(arguments, name, contacts, row); });
       csv << contacts << ',' << row.velocities << ',' << name << ','
-          << (ending == Ending::FINISHED ? row.status : "CRASHED") << ',' << row.residual << ',' << row.validator << ','
-          << row.iterations << ',' << row.reduction << ',' << row.solve << ',' << row.megabytes << std::endl;
+          << (ending == Ending::FINISHED     ? row.status
+              : ending == Ending::TIME_LIMIT ? toString(SolverStatus::TIME_LIMIT)
+                                             : "CRASHED")
+          << ',' << row.residual << ',' << row.validator << ',' << row.iterations << ',' << row.reduction << ','
+          << row.solve << ',' << row.megabytes << std::endl;
     }
 }
 }  // namespace
