@@ -1,0 +1,85 @@
+// run_scenario --dump from outside: the problems of chosen steps as FCLib files.
+#include <gtest/gtest.h>
+
+#include "command.h"
+#include "frictional_contact_sim/problem/fclib.h"
+#include "frictional_contact_sim/solver/registry.h"
+
+using namespace frictional_contact_sim;
+using namespace frictional_contact_sim::test_support;
+namespace fs = std::filesystem;
+
+namespace
+{
+class RunScenarioDumpTest : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    base_ = (fs::temp_directory_path() / ("run_scenario_test_" + std::to_string(getpid()))).string();
+    folder_ = base_ + "_dump";
+    fs::create_directories(base_);
+  }
+  void TearDown() override
+  {
+    fs::remove_all(base_);
+    fs::remove_all(folder_);
+  }
+  /// A box of 10 kg held by friction on the ground, pulled sideways; 12 steps.
+  std::string run(const std::string& arguments, int code = 0, const std::string& solver = "tolerance: 1.0e-8") const
+  {
+    const std::string scene = base_ + "/box.yaml";
+    std::ofstream(scene) << "solver: {" << solver
+                         << "}\nduration: 0.012\ngravity: [2, 0.5, -9.81]\nground: {}\nbodies:\n  - {name: box, urdf: "
+                         << PROJECT_DIR << "/urdf/block.urdf, pose: {xyz: [0, 0, 0.1]}}\n";
+    const CommandResult result = runTool("run_scenario", scene + " " + arguments);
+    EXPECT_EQ(result.code, code) << result.errors;
+    return result.errors;
+  }
+  std::vector<std::string> files() const
+  {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  std::string base_;
+  fs::path folder_;
+};
+
+TEST_F(RunScenarioDumpTest, WritesEveryNthStepWithTheSameAnswerInBothForms)
+{
+  for (const std::string form : {"", " --dump-local"})
+  {
+    run("--dump " + folder_.string() + " --dump-every 5" + form);
+    EXPECT_EQ(files(), (std::vector<std::string>{"box_4_10.hdf5", "box_4_5.hdf5"}));
+    const FclibProblem problem = readFclib((folder_ / "box_4_10.hdf5").string());
+    EXPECT_EQ(problem.kind, form.empty() ? FclibKind::GLOBAL : FclibKind::LOCAL);
+    EXPECT_EQ(problem.contacts, 4);
+    const std::unique_ptr<Solver> solver = createSolver("portfolio");
+    solver->setStopping({1e-12, 1000, 0.0});
+    const SolverResult result = form.empty() ? solver->solve(problem.global) : solver->solve(problem.local);
+    ASSERT_EQ(result.status, SolverStatus::CONVERGED);
+    double normal = 0.0;
+    for (int i = 0; i < 4; ++i)
+      normal += result.solution.r[3 * i];
+    EXPECT_NEAR(normal, 10.0 * 9.81 * 0.001, 1e-9);  // 10 kg for one step; solver's tolerance
+    fs::remove_all(folder_);
+  }
+}
+
+TEST_F(RunScenarioDumpTest, IsWrittenThoughTheSolveFails)
+{
+  run("--dump " + folder_.string(), 1, "name: ac_fixed_point, max_iterations: 1, tolerance: 1.0e-14");
+  EXPECT_EQ(files().size(), 12U);
+}
+
+TEST_F(RunScenarioDumpTest, OptionsWithoutAFolderAreRefused)
+{
+  EXPECT_NE(run("--dump-every 5", 2).find("--dump"), std::string::npos);
+  EXPECT_NE(run("--dump-local", 2).find("--dump"), std::string::npos);
+  EXPECT_NE(run("--dump /proc/nowhere", 2).find("/proc/nowhere"), std::string::npos);
+}
+}  // namespace
