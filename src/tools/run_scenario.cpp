@@ -1,6 +1,4 @@
 // run_scenario FILE.yaml: runs a scenario in process, as fast as it can, and prints one JSON object.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -18,6 +16,7 @@
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "tool_support.h"
 
 namespace fcs = frictional_contact_sim;
 using nlohmann::json;
@@ -58,36 +57,6 @@ std::vector<double> list(const Eigen::VectorXd& vector)
   return {vector.data(), vector.data() + vector.size()};
 }
 
-/** A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
-class Progress
-{
-public:
-  explicit Progress(long total) : total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~Progress()
-  {
-    if (shown_)
-      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r';
-  }
-  void update(long done, double seconds)
-  {
-    const long percent = total_ > 0 ? 100 * done / total_ : 100;
-    if (!terminal_ || seconds < 2.0 || percent == last_)
-      return;
-    last_ = percent;
-    shown_ = true;
-    const auto filled = static_cast<size_t>(percent * WIDTH / 100);
-    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
-              << std::flush;
-  }
-
-private:
-  static constexpr long WIDTH = 40;
-  long total_;
-  long last_ = -1;
-  bool terminal_;
-  bool shown_ = false;
-};
-
 /** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem. */
 void dumpProblem(const fcs::Simulator& simulator, const Options& options)
 {
@@ -123,7 +92,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     recorder = std::make_unique<fcs::CsvRecorder>(options.output);
   if (recorder)
     recorder->record(simulator, false);
-  Progress progress(total);
+  fcs::tools::ProgressBar progress(total);
   const auto start = std::chrono::steady_clock::now();
   for (; summary.steps < total && interrupted == 0; ++summary.steps)
   {
@@ -137,7 +106,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     if (!options.dump.empty() && (summary.steps + 1) % options.dump_every == 0)
       dumpProblem(simulator, options);
     if (summary.steps % 100 == 0)
-      progress.update(summary.steps, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      progress.update(summary.steps);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (recorder)
