@@ -33,8 +33,11 @@ public:
     if (last_ >= 0)
       std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r' << std::flush;
   }
+  /** The share done so far is shown again, so that a long first problem has a bar as well. */
+  void refresh() { update(share_); }
   void update(double share)
   {
+    share_ = share;
     const auto percent = static_cast<long>(100.0 * share);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     if (!terminal_ || seconds < 2.0 || percent == last_)
@@ -49,6 +52,7 @@ private:
   static constexpr long WIDTH = 40;
   std::chrono::steady_clock::time_point start_;
   bool terminal_;
+  double share_ = 0.0;
   long last_ = -1;
 };
 
@@ -90,7 +94,11 @@ int run(const Options& options)
     Progress progress;
     fcs::RunHooks hooks;
     hooks.progress = [&progress](double share) { progress.update(share); };
-    hooks.interrupted = []() { return interrupted != 0; };
+    hooks.interrupted = [&progress]()
+    {
+      progress.refresh();
+      return interrupted != 0;
+    };
     runs = fcs::runRollingCase(study, hooks);
   }
   bool converged = interrupted == 0;
