@@ -3,7 +3,7 @@
 
 rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all.
 Left: our methods, right: Siconos's, our portfolio in both. Targets 1e-4 and 1e-8 of the residual E, judged by the
-independent validator.
+independent validator. 3D problems only: a solver is not to be blamed for problems it is not made for.
 """
 import argparse
 import csv
@@ -24,9 +24,9 @@ def read_times(paths, target):
     for path in paths:
         with open(path, newline="") as file:
             for row in csv.DictReader(file):
-                if row["target"].startswith("thesis") or float(row["target"]) != target:
+                if row["target"].startswith("thesis") or float(row["target"]) != target or row["dimension"] != "3":
                     continue
-                solver = row["solver"].replace("siconos 2D", "siconos")
+                solver = row["solver"]
                 names = ours if row["ours"] == "1" else theirs
                 if solver not in names:
                     names.append(solver)
@@ -46,7 +46,7 @@ def profile(times, solver):
 
 
 def plot(times, ours, theirs, target, path):
-    figure, panels = plt.subplots(1, 2, figsize=(13, 5.5), sharey=True)
+    figure, panels = plt.subplots(1, 2, figsize=(13, 6.5), sharey=True)
     for panel, title, names in ((panels[0], "this package", ours),
                                 (panels[1], "Siconos 4.4.0", ["portfolio"] + theirs)):
         colours = plt.get_cmap("tab20").colors
@@ -62,8 +62,8 @@ def plot(times, ours, theirs, target, path):
         panel.set_xlabel("time / time of the quickest solver")
         panel.set_title(title)
         panel.grid(alpha=0.3, which="both")
-        panel.legend(fontsize=7, loc="lower right", ncol=2)
-    panels[0].set_ylabel(f"share of {len(times)} problems solved")
+        panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=4)
+    panels[0].set_ylabel(f"share of {len(times)} 3D problems solved")
     figure.suptitle(f"Performance profiles, residual E <= {target:g}, cold starts, CPU time")
     figure.tight_layout()
     figure.savefig(path, dpi=110)

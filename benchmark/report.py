@@ -83,7 +83,7 @@ def ratio_table(rows, target):
         first = outcomes[0]
         lines.append([problem, class_of(first), first["contacts"], f"{first['rows']}/{first['rank']}",
                       duration(float(ours["seconds"])) if ours else "unsolved",
-                      duration(float(theirs["seconds"])) if theirs else "none",
+                      duration(float(theirs["seconds"])) if theirs else "none in time",
                       f"{theirs['solver'].replace('siconos ', '')}, {theirs['variant']}" if theirs else "-", ratio])
     text = table(["problem", "class", "contacts", "rows/rank W", REFERENCE, "best Siconos", "which, storage", "ratio"],
                  lines)

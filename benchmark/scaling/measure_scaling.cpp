@@ -36,8 +36,8 @@ constexpr double REPEAT_TIME = 0.5;  ///< short solves are repeated for so long 
 
 struct Arguments
 {
-  std::vector<int> contacts = {10, 100, 1000, 10000, 50000};
-  std::vector<std::string> solvers = {"portfolio", "gauss_seidel"};
+  std::vector<int> contacts = {10, 100, 1000, 3000, 10000, 50000};
+  std::vector<std::string> solvers = {"portfolio", "haslinger", "gauss_seidel"};
   double tolerance = 1e-8;
   double time_limit = 120.0;
   std::string output = ".";
