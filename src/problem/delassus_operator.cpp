@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "frictional_contact_sim/math/dense_kernels.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -216,7 +218,7 @@ void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
   y.resize(rows());
   if (is_dense_)
   {
-    y.noalias() = dense_ * x;
+    denseProduct(dense_.data(), rows(), rows(), x.data(), y.data());
     return;
   }
   if (is_matrix_free_)

@@ -6,25 +6,40 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// r/rho - P(r/rho - u~), the projection written out: this runs for every contact in every iteration of every method.
+/// Divided by rho before projecting (the cone is a cone): no huge intermediate values when rho is large.
 template <int D>
-double coulombError(double mu, const double* u_data, const double* r_data, double rho, double* e)
+double coulombError(double mu, const double* u, const double* r, double rho, double* e)
 {
-  // Take-off, the law of most contacts of loose heaps: 0 - P(-u~) is exactly zero.
-  if (u_data[0] >= 0.0 && Eigen::Map<const Vector<D>>(r_data).isZero(0.0) &&
-      Eigen::Map<const Vector<D>>(u_data).allFinite())
+  const double u1 = u[1], u2 = D == 3 ? u[D - 1] : 0.0;
+  const double shifted = u[0] + mu * std::sqrt(u1 * u1 + u2 * u2);
+  const double inverse = 1.0 / rho;
+  const double r0 = inverse * r[0], r1 = inverse * r[1], r2 = D == 3 ? inverse * r[D - 1] : 0.0;
+  const double y0 = r0 - shifted, y1 = r1 - u1, y2 = r2 - u2;
+  const double tangential = std::sqrt(y1 * y1 + y2 * y2);
+  double e0 = r0, e1 = r1, e2 = r2;  // y in the polar cone: its projection is zero
+  if (y0 >= 0.0 && tangential <= mu * y0)
   {
-    if (e != nullptr)
-      Eigen::Map<Vector<D>>(e, D).setZero();
-    return 0.0;
+    e0 = shifted;
+    e1 = u1;
+    e2 = u2;
   }
-  const Vector<D> u = deSaxce<D>(Eigen::Map<const Vector<D>>(u_data), mu);
-  const Vector<D> r = Eigen::Map<const Vector<D>>(r_data);
-  // Divided by rho before projecting (the cone is a cone): no huge intermediate values when rho is large.
-  const Vector<D> scaled = r / rho;
-  const Vector<D> error = scaled - projectOntoCone<D>(scaled - u, mu);
+  else if (!(mu * tangential <= -y0))
+  {
+    const double t = (y0 + mu * tangential) / (1.0 + mu * mu);
+    const double turn = mu * t / tangential;
+    e0 = r0 - t;
+    e1 = r1 - turn * y1;
+    e2 = r2 - turn * y2;
+  }
   if (e != nullptr)
-    Eigen::Map<Vector<D>>(e, D) = error;
-  return error.norm();
+  {
+    e[0] = e0;
+    e[1] = e1;
+    if (D == 3)
+      e[D - 1] = e2;
+  }
+  return std::sqrt(e0 * e0 + e1 * e1 + e2 * e2);
 }
 }  // namespace
 
@@ -73,7 +88,9 @@ double largestEigenvalue(const SquareMatrix<1>& block)
 double largestEigenvalue(const SquareMatrix<2>& block)
 {
   const double mean = 0.5 * (block(0, 0) + block(1, 1));
-  return mean + std::hypot(0.5 * (block(0, 0) - block(1, 1)), 0.5 * (block(0, 1) + block(1, 0)));
+  const double half = 0.5 * (block(0, 0) - block(1, 1));
+  const double coupling = 0.5 * (block(0, 1) + block(1, 0));
+  return mean + std::sqrt(half * half + coupling * coupling);
 }
 
 double largestEigenvalue(const SquareMatrix<3>& block)

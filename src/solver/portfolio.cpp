@@ -88,16 +88,17 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   result.iterations = used_;
   const double value = criterion(problem, result.solution.r);
   if (value < best_value_)
+  {
+    best_value_ = value;
+    best_r_ = result.solution.r;
     result.solver = method.name();
-  return keepBetter(value, result.solution.r);
+  }
+  else
+    result.solution.r = best_r_;
+  return best_value_ <= stopping().tolerance;
 }
 
-/**
- * A start that costs one product: every law solved as if it were alone, then all impulses scaled by the factor t <= 1
- * that minimises 1/2 r' W r + q' r. Exact when the laws are not coupled, and for one contact; it keeps the symmetry of
- * a symmetric problem, which a sweep of Gauss-Seidel does not.
- */
-double Portfolio::startApart(const DelassusProblem& problem, Eigen::VectorXd& r)
+bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
@@ -110,40 +111,25 @@ double Portfolio::startApart(const DelassusProblem& problem, Eigen::VectorXd& r)
     else
       r[row] = solveOneDimensional(law, problem.W.diagonalBlock<1>(i)(0, 0), problem.q[row], 0.0);
   }
-  problem.W.apply(r, velocity_);
-  const double power = r.dot(velocity_);
+  problem.W.apply(r, u);
+  const double power = r.dot(u);
   const double t = power > 0.0 ? std::min(1.0, -problem.q.dot(r) / power) : 0.0;
   if (!(t > 0.0))
-    return std::numeric_limits<double>::infinity();
-  r *= t;
-  velocity_ = t * velocity_ + problem.q;
-  return residual(problem, velocity_, r);
-}
-
-/** Takes r when it is better than the best so far, otherwise goes back to that. @return whether the best is good enough
- */
-bool Portfolio::keepBetter(double value, Eigen::VectorXd& r)
-{
-  if (value < best_value_)
   {
-    best_value_ = value;
-    best_r_ = r;
+    r.setZero();
+    return false;
   }
-  else
-    r = best_r_;
-  return best_value_ <= stopping().tolerance;
+  r *= t;
+  u = t * u + problem.q;
+  return true;
 }
 
 void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
-  Eigen::VectorXd& r = result.solution.r;
   used_ = 0;
-  best_r_ = r;
-  const bool cold = r.isZero(0.0);
-  best_value_ = cold ? residual(problem, problem.q, r) : criterion(problem, r);
+  best_r_ = result.solution.r;
+  best_value_ = criterion(problem, best_r_);
   bool done = best_value_ <= stopping().tolerance;
-  if (!done && cold)
-    done = keepBetter(startApart(problem, r), r);
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   SemismoothNewtonOptions newton;
   // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
@@ -11,12 +13,29 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// As in problem/residual.h [m/s].
+constexpr double VELOCITY_FLOOR = 1e-12;
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.
 constexpr int REFINEMENTS = 3;
 
 double maxAbs(const Eigen::VectorXd& x)
 {
   return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
+}
+
+/** A bound on max_i |e_i| at r = 0, u = q [m/s]; the projections involved do not lengthen. */
+double restingError(const DelassusProblem& problem)
+{
+  double worst = 0.0;
+  int row = 0;
+  for (const Law& law : problem.laws)
+  {
+    const double velocity = problem.q[row];
+    const bool one_sided = law.isCoulomb() || law.type == LawType::UNILATERAL;
+    worst = std::max(worst, one_sided ? -velocity : std::abs(velocity));
+    row += law.dimension();
+  }
+  return worst;
 }
 
 void checkGuess(const Solution& guess, int rows)
@@ -115,23 +134,49 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.doSolve(problem, result);
 }
 
+bool Solver::start(const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorXd&)
+{
+  return false;
+}
+
+/** E at (u, r) and the stopping criterion there. */
+double Solver::measure(const DelassusProblem& problem, const Solution& solution)
+{
+  const LawErrors errors = measureLaws(problem.laws, step_lengths_, free_velocity_, solution.u, solution.r);
+  criterion_ = errors.residual(IMPULSE_CAP);
+  return errors.residual();
+}
+
+/** Cold starts that already solve the problem. @return E there; larger than the tolerance when they do not. */
+double Solver::solveAtOnce(const DelassusProblem& problem, SolverResult& result)
+{
+  Solution& solution = result.solution;
+  solution.r.setZero(problem.W.rows());
+  // Without impulses e_i depends on q alone: a scene where everything parts costs no product with W.
+  criterion_ = restingError(problem) / std::max(free_velocity_, VELOCITY_FLOOR);
+  if (criterion_ <= stopping_.tolerance)
+  {
+    solution.u = problem.q;
+    return criterion_;
+  }
+  if (!start(problem, solution.r, solution.u))
+    return std::numeric_limits<double>::infinity();
+  return measure(problem, solution);
+}
+
 double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
 {
-  const int rows = problem.W.rows();
   computeStepLengths(problem, step_lengths_);
   free_velocity_ = maxAbs(problem.q);
   deadline_ = stopping_.time_limit;
-  if (guess != nullptr)
-    result.solution.r = guess->r;
-  else
-    result.solution.r.setZero(rows);
-  if (rows == 0)
+  if (guess == nullptr)
   {
-    result.solution.u.resize(0);
-    result.status = SolverStatus::CONVERGED;
-    criterion_ = 0.0;
-    return 0.0;
+    const double value = solveAtOnce(problem, result);
+    if (value <= stopping_.tolerance && criterion_ <= stopping_.tolerance)
+      return value;
   }
+  else
+    result.solution.r = guess->r;
   if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
     solveIslands(problem, result);
   else
@@ -144,10 +189,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   }
   problem.W.apply(result.solution.r, result.solution.u);
   result.solution.u += problem.q;
-  const LawErrors errors =
-      measureLaws(problem.laws, step_lengths_, free_velocity_, result.solution.u, result.solution.r);
-  criterion_ = errors.residual(IMPULSE_CAP);
-  return errors.residual();
+  return measure(problem, result.solution);
 }
 
 void Solver::checkOperator(bool global) const

@@ -25,8 +25,6 @@ public:
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
 
 private:
-  bool eliminate(int k);
-
   int size_ = 0;
   std::vector<double> values_;
   std::vector<int> pivots_;

@@ -47,11 +47,15 @@ public:
 
 protected:
   std::unique_ptr<Solver> sibling() const override;
+  /**
+   * @brief Every law solved as if it were alone, then all impulses scaled by the t <= 1 that minimises 1/2 r' W r + q'
+   * r. One product; exact where laws are not coupled, and it keeps the symmetry of a symmetric problem, which a sweep
+   * of Gauss-Seidel does not.
+   */
+  bool start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u) override;
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
-  double startApart(const DelassusProblem& problem, Eigen::VectorXd& r);
-  bool keepBetter(double value, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 

@@ -107,6 +107,11 @@ protected:
   virtual std::unique_ptr<Solver> sibling() const { return nullptr; }
   /** @brief To be called by setOptions() of a method that overrides sibling(). */
   void dropSiblings();
+  /**
+   * @brief A method's own cold start, before islands are split: sets r, and u = W r + q with it.
+   * @return false = there is none (the default), r is untouched
+   */
+  virtual bool start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
   bool timeIsUp() const;
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
@@ -122,6 +127,8 @@ protected:
   double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
 
 private:
+  double measure(const DelassusProblem& problem, const Solution& solution);
+  double solveAtOnce(const DelassusProblem& problem, SolverResult& result);
   double solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
   void solveIslands(const DelassusProblem& problem, SolverResult& result);
   void solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot);
