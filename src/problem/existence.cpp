@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "criterion_program.h"
 #include "existence_certificate.h"
 #include "frictional_contact_sim/math/cone.h"
-#include "linear_program.h"
 
 namespace frictional_contact_sim
 {
@@ -33,121 +33,6 @@ double squaredNorm(const SparseRows& H)
   const double columns = (sizes.transpose() * ones_left).lpNorm<Eigen::Infinity>();
   return std::max(rows * columns, 1e-300);
 }
-
-/** The linear program's units: |w| for u and s, |w|/max|H_i| for v, so that its data are about one. */
-struct Units
-{
-  double height = 1.0;  ///< of H
-  double velocity = 1.0;  ///< of u and s
-};
-
-/** min -s,   H v - u = -w,   E v = -b,   u_N - s - c d.u_T >= 0 for every facet (cone, d, c),   |v| <= R */
-class CriterionProgram
-{
-public:
-  CriterionProgram(const ContactKinematics& kinematics, const Units& units, double bound, double cap)
-    : kinematics_(kinematics), units_(units)
-  {
-    const int size = static_cast<int>(kinematics.H.cols());
-    const double scaled_bound = bound * units.height / units.velocity;
-    for (int j = 0; j < size; ++j)
-      program_.addColumn(-scaled_bound, scaled_bound, 0.0);
-    first_u_ = size;
-    for (int j = 0; j < kinematics.H.rows(); ++j)
-      program_.addColumn(-LinearProgram::INFINITE, LinearProgram::INFINITE, 0.0);
-    s_ = program_.addColumn(-LinearProgram::INFINITE, cap, -1.0);
-    addMatrix(kinematics.H, kinematics.w, first_u_);
-    first_bilateral_ = addMatrix(kinematics.E, kinematics.b, -1);
-  }
-
-  /** u_N - s >= slope d.u_T; slope = 0: the normal alone. */
-  void addFacet(int index, const Eigen::Vector2d& direction, double slope)
-  {
-    const DualCone& cone = kinematics_.cones[static_cast<std::size_t>(index)];
-    std::vector<int> columns = {first_u_ + cone.row, s_};
-    std::vector<double> values = {1.0, -1.0};
-    for (int k = 0; k + 1 < cone.dimension && slope != 0.0; ++k)
-    {
-      if (std::abs(direction[k]) < 1e-12)
-        continue;
-      columns.push_back(first_u_ + cone.row + 1 + k);
-      values.push_back(-slope * direction[k]);
-    }
-    facets_.push_back({program_.addRow(0.0, LinearProgram::INFINITE, columns, values), index, slope * direction});
-  }
-
-  bool solve(int max_iterations)
-  {
-    if (!program_.solve(max_iterations))
-      return false;
-    x_ = program_.solution();
-    return true;
-  }
-
-  Eigen::VectorXd v() const { return (units_.velocity / units_.height) * x_.head(first_u_); }
-  double s() const { return x_[s_]; }
-  /** Scaled velocity of a row. */
-  double u(int row) const { return x_[first_u_ + row]; }
-
-  /** The multipliers of the facets as impulses in L; they sum up to one. */
-  void multipliers(Eigen::VectorXd& r, Eigen::VectorXd& lambda) const
-  {
-    const Eigen::VectorXd prices = program_.prices();
-    r.setZero(kinematics_.H.rows());
-    for (const Facet& facet : facets_)
-    {
-      const DualCone& cone = kinematics_.cones[static_cast<std::size_t>(facet.cone)];
-      const double price = std::max(0.0, prices[facet.row]);
-      r[cone.row] += price;
-      r.segment(cone.row + 1, cone.dimension - 1) -= price * facet.slope.head(cone.dimension - 1);
-    }
-    lambda = prices.segment(first_bilateral_, kinematics_.E.rows());
-  }
-
-private:
-  struct Facet
-  {
-    int row;
-    int cone;
-    Eigen::Vector2d slope;
-  };
-
-  int addMatrix(const SparseRows& matrix, const Eigen::VectorXd& offset, int first_slack)
-  {
-    int first = -1;
-    std::vector<int> columns;
-    std::vector<double> values;
-    for (int j = 0; j < matrix.rows(); ++j)
-    {
-      columns.clear();
-      values.clear();
-      for (SparseRows::InnerIterator entry(matrix, j); entry; ++entry)
-      {
-        columns.push_back(static_cast<int>(entry.col()));
-        values.push_back(entry.value() / units_.height);
-      }
-      if (first_slack >= 0)
-      {
-        columns.push_back(first_slack + j);
-        values.push_back(-1.0);
-      }
-      const double right = -offset[j] / units_.velocity;
-      const int row = program_.addRow(right, right, columns, values);
-      if (first < 0)
-        first = row;
-    }
-    return std::max(first, 0);
-  }
-
-  const ContactKinematics& kinematics_;
-  Units units_;
-  LinearProgram program_;
-  int first_u_ = 0;
-  int s_ = 0;
-  int first_bilateral_ = 0;
-  std::vector<Facet> facets_;
-  Eigen::VectorXd x_;
-};
 
 class Criterion
 {
@@ -204,7 +89,9 @@ private:
   void consider(Eigen::VectorXd v)
   {
     const double missing = correction_.apply(v);
-    const double margin = verifiedMargin(kinematics_, v, missing);
+    // Contradicting bilateral rows leave a correction that no velocity makes.
+    const bool consistent = missing <= 1e-6 * (bound_ + v.norm());
+    const double margin = consistent ? verifiedMargin(kinematics_, v, missing) : -INFINITE;
     if (margin > report_.margin || report_.v.size() == 0)
     {
       report_.margin = margin;
@@ -393,7 +280,7 @@ private:
   BilateralCorrection correction_;
   ExistenceReport report_;
   double bound_ = 1.0;
-  Units units_;
+  CriterionUnits units_;
   bool curved_ = false;
 };
 

@@ -135,6 +135,8 @@ TEST(ExistenceTest, BilateralRowsRestrictTheCertificateAndRedundantOnesAreHarmle
   EXPECT_NEAR(open.v[0], 0.1, 1e-14);
   problem.b = -problem.b;  // at -0.1
   EXPECT_EQ(checkExistence(problem).verdict, Existence::REFUTED);
+  problem.b = Eigen::Vector2d(-0.1, 0.2);  // at 0.1 and at -0.1
+  EXPECT_NE(checkExistence(problem).verdict, Existence::CERTIFIED);
 }
 
 TEST(ExistenceTest, OneDimensionalLaws)
