@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "frictional_contact_sim/rolling/closed_forms.h"
+#include "frictional_contact_sim/rolling/core_comparison.h"
 #include "frictional_contact_sim/rolling/rolling_case.h"
 
 namespace fcs = frictional_contact_sim;
@@ -20,6 +21,7 @@ struct Options
 {
   std::string file;
   std::string output;
+  std::vector<std::string> compare;
   int nodes = 0;
 };
 
@@ -84,9 +86,27 @@ void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
               << ", worst residual " << run.curve->worst_residual << '\n';
 }
 
+/** The static answer beside those of the core's solvers on the same contact. */
+void compare(const fcs::RollingRun& run, const std::vector<std::string>& solvers)
+{
+  constexpr double TOLERANCE = 1e-11;
+  const Eigen::Index n = run.gap.size();
+  const fcs::CoreProblem core =
+      fcs::poseForTheCore(run.flexibility, Eigen::VectorXd::Constant(1, run.friction), run.gap.array() - run.approach,
+                          Eigen::VectorXd::Constant(n, run.shift));
+  for (const std::string& solver : solvers)
+  {
+    const fcs::CoreComparison one = fcs::compareWithCore(core, run.contact, solver, TOLERANCE);
+    std::cout << "  core's " << one.solver << ": " << one.status << "   tractions differ by " << one.difference
+              << "   iterations " << one.iterations << "   CPU " << one.seconds << " s\n";
+  }
+}
+
 int run(const Options& options)
 {
   fcs::RollingCase study = fcs::loadRollingCase(options.file);
+  if (!options.compare.empty() && study.motion != fcs::Motion::STATIC)
+    throw std::invalid_argument(options.file + ": key 'rolling.motion': --compare expects static");
   if (options.nodes > 0)
     study.nodes = options.nodes;
   std::vector<fcs::RollingRun> runs;
@@ -105,6 +125,8 @@ int run(const Options& options)
   for (const fcs::RollingRun& one : runs)
   {
     print(study, one);
+    if (!options.compare.empty() && one.converged)
+      compare(one, options.compare);
     converged = converged && one.converged;
   }
   if (!options.output.empty())
@@ -130,6 +152,9 @@ int main(int argc, char** argv)
   app.add_option("--output", options.output,
                  "folder for NAME_nodes.csv, NAME_runs.csv, NAME_curve_I.yaml; pictures by scripts/plot_rolling");
   app.add_option("--nodes", options.nodes, "contact nodes instead of the file's")->check(CLI::Range(1, 2000));
+  app.add_option("--compare", options.compare,
+                 "solvers of the core (registry names, comma between) for the same static contact")
+      ->delimiter(',');
   try
   {
     app.parse(argc, argv);

@@ -67,6 +67,15 @@ TEST_F(RollingContactTest, CreepCurveIsExported)
     EXPECT_THAT(textOf(file("materials_curve_" + std::to_string(run) + ".yaml")), StartsWith("creep_curve:\n"));
 }
 
+TEST_F(RollingContactTest, ComparesWithTheCoresSolvers)
+{
+  const CommandResult result =
+      runTool("rolling_contact", example("cattaneo") + " --nodes 20 --compare lcp_lemke,ac_newton");
+  EXPECT_EQ(result.code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("core's lcp_lemke: CONVERGED"));
+  EXPECT_THAT(result.output, HasSubstr("core's ac_newton: CONVERGED"));
+}
+
 TEST_F(RollingContactTest, UnfinishedWorkIsExitCodeOne)
 {
   const CommandResult result =
@@ -103,4 +112,5 @@ TEST_F(RollingContactTest, BadInputIsOneLineAndExitCodeTwo)
   EXPECT_THAT(complaint(file("missing.yaml")), HasSubstr("cannot be read"));
   EXPECT_THAT(complaint(""), HasSubstr("FILE is required"));
   EXPECT_THAT(complaint(example("cattaneo") + " --nodes 0"), HasSubstr("--nodes"));
+  EXPECT_THAT(complaint(example("carter") + " --nodes 20 --compare lcp_lemke"), HasSubstr("--compare expects static"));
 }
