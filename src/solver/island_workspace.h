@@ -22,9 +22,13 @@ struct IslandSlot
   long last_used = 0;
   DelassusProblem problem;
   Eigen::VectorXd step_lengths;
+  Eigen::VectorXd velocity;  ///< u of the method's cold start
   SolverResult result;
   std::unique_ptr<Solver> method;  ///< a sibling of the solver; nullptr: the solver itself
 };
+
+/** @brief A method that forms a dense matrix of a large problem may run out of memory: a status, not a crash. */
+void reportNoMemory(const DelassusProblem& problem, SolverResult& result);
 
 struct IslandWorkspace
 {
@@ -47,6 +51,7 @@ struct IslandWorkspace
   std::vector<int> position;  ///< of every law of the whole in the present island, or -1
   std::vector<IslandSlot> slots;
   long clock = 0;
+  bool cold = false;  ///< no guess: the method's own start serves each island
   Eigen::VectorXd velocity;  ///< u of the guess
   Eigen::VectorXd errors;  ///< of the laws at the guess [m/s]
   Eigen::VectorXd step_lengths;  ///< of the whole

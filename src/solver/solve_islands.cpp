@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <new>
+#include <string>
 
 #include "frictional_contact_sim/problem/residual.h"
 #include "island_workspace.h"
@@ -38,6 +40,7 @@ void clear(SolverResult& result)
 {
   result.status = SolverStatus::NOT_RUN;
   result.iterations = 0;
+  result.residual = -1.0;  // not known
   result.solver.clear();
   result.tried.clear();
   result.message.clear();
@@ -59,6 +62,12 @@ void merge(int first_law, const SolverResult& island, SolverResult& whole)
   }
 }
 }  // namespace
+
+void reportNoMemory(const DelassusProblem& problem, SolverResult& result)
+{
+  result.status = SolverStatus::NUMERICAL_FAILURE;
+  result.message = "not enough memory for " + std::to_string(problem.W.rows()) + " rows";
+}
 
 IslandSlot& IslandWorkspace::slot(int rows, std::size_t blocks)
 {
@@ -155,7 +164,20 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   for (const int i : islands_->laws)
     position[static_cast<std::size_t>(i)] = -1;
   SolverResult& result = slot.result;
-  method.doSolve(slot.problem, result);
+  try
+  {
+    if (islands_->cold)
+    {
+      // As if the island were alone: the start of the whole may be scaled by what others need.
+      result.solution.r.setZero();
+      method.start(slot.problem, result.solution.r, slot.velocity);
+    }
+    method.doSolve(slot.problem, result);
+  }
+  catch (const std::bad_alloc&)
+  {
+    reportNoMemory(slot.problem, result);
+  }
   if (!result.solution.r.allFinite())
   {
     result.solution.r.setZero();

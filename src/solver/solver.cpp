@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -13,6 +12,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// A stopping criterion that nobody has evaluated.
+constexpr double UNKNOWN = -1.0;
 /// As in problem/residual.h [m/s].
 constexpr double VELOCITY_FLOOR = 1e-12;
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.
@@ -131,6 +132,7 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.deadline_ = deadline_;
   method.step_lengths_ = step_lengths_;
   method.free_velocity_ = free_velocity_;
+  result.residual = UNKNOWN;
   method.doSolve(problem, result);
 }
 
@@ -160,7 +162,7 @@ double Solver::solveAtOnce(const DelassusProblem& problem, SolverResult& result)
     return criterion_;
   }
   if (!start(problem, solution.r, solution.u))
-    return std::numeric_limits<double>::infinity();
+    solution.u = problem.q;
   return measure(problem, solution);
 }
 
@@ -169,18 +171,31 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   computeStepLengths(problem, step_lengths_);
   free_velocity_ = maxAbs(problem.q);
   deadline_ = stopping_.time_limit;
-  if (guess == nullptr)
+  // Without rows there is nothing to do, guess or not.
+  if (guess == nullptr || problem.W.rows() == 0)
   {
     const double value = solveAtOnce(problem, result);
     if (value <= stopping_.tolerance && criterion_ <= stopping_.tolerance)
       return value;
+    result.residual = criterion_;
   }
   else
+  {
     result.solution.r = guess->r;
+    result.residual = UNKNOWN;
+  }
+  islands_->cold = guess == nullptr;
   if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
     solveIslands(problem, result);
   else
-    doSolve(problem, result);
+    try
+    {
+      doSolve(problem, result);
+    }
+    catch (const std::bad_alloc&)
+    {
+      reportNoMemory(problem, result);
+    }
   if (!result.solution.r.allFinite())
   {
     result.solution.r.setZero();
