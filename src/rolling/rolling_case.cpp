@@ -134,7 +134,8 @@ RollingRun runOne(const RollingCase& study, double friction, double lower_modulu
   else if (run.converged)
     rollOn(study, lcp, hooks, run);
   run.contact_seconds = processSeconds() - start;
-  if (study.curve_points > 0 && pressed && friction > 0.0)
+  const bool stopped = hooks.interrupted && hooks.interrupted();
+  if (study.curve_points > 0 && pressed && friction > 0.0 && !stopped)
   {
     CreepCurveOptions options;
     options.points = study.curve_points;
