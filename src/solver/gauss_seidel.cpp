@@ -130,6 +130,7 @@ void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
     problem.W.apply(r, velocity_);
     velocity_ += problem.q;
     const double value = residual(problem, velocity_, r);
+    result.residual = value;
     if (value <= tolerance)
     {
       result.status = SolverStatus::CONVERGED;

@@ -1,6 +1,7 @@
 #include "frictional_contact_sim/solver/portfolio.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -86,7 +87,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   delegate(method, problem, margin * stopping().tolerance, budget, result);
   used_ += result.iterations;
   result.iterations = used_;
-  const double value = criterion(problem, result.solution.r);
+  const double value = result.residual >= 0.0 ? result.residual : criterion(problem, result.solution.r);
   if (value < best_value_)
   {
     best_value_ = value;
@@ -98,7 +99,8 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   return best_value_ <= stopping().tolerance;
 }
 
-bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
+/** Every law solved as if it were alone: exact where laws are not coupled. */
+void Portfolio::solveApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
@@ -111,16 +113,64 @@ bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen:
     else
       r[row] = solveOneDimensional(law, problem.W.diagonalBlock<1>(i)(0, 0), problem.q[row], 0.0);
   }
-  problem.W.apply(r, u);
-  const double power = r.dot(u);
-  const double t = power > 0.0 ? std::min(1.0, -problem.q.dot(r) / power) : 0.0;
-  if (!(t > 0.0))
-  {
-    r.setZero();
+}
+
+namespace
+{
+/** One contact, row by row: -q_N / W_NN, and what would stop q_T within the disc. @return whether it is at its bound */
+template <int D>
+bool solveRows(const SquareMatrix<D>& W, const Vector<D>& q, double mu, Eigen::Ref<Vector<D>> r)
+{
+  if (!(q[0] < 0.0 && W(0, 0) > 0.0))
     return false;
+  r[0] = -q[0] / W(0, 0);
+  const double tangential = (W.trace() - W(0, 0)) / (D - 1);
+  if (!(tangential > 0.0))
+    return false;
+  const Vector<D - 1> stopping = q.template tail<D - 1>() / -tangential;
+  r.template tail<D - 1>() = projectOntoBall<D - 1>(stopping, mu * r[0]);
+  return stopping.norm() > mu * r[0];
+}
+}  // namespace
+
+/** Every row of the Coulomb laws solved as if it were alone; other laws without impulse. @return whether one slides */
+bool Portfolio::solveRowsApart(const DelassusProblem& problem, Eigen::VectorXd& r)
+{
+  r.setZero(problem.W.rows());
+  bool sliding = false;
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const int row = problem.W.offset(i);
+    if (law.type == LawType::COULOMB_3D)
+      sliding |=
+          solveRows<3>(problem.W.diagonalBlock<3>(i), problem.q.segment<3>(row), law.coefficient, r.segment<3>(row));
+    else if (law.type == LawType::COULOMB_2D)
+      sliding |=
+          solveRows<2>(problem.W.diagonalBlock<2>(i), problem.q.segment<2>(row), law.coefficient, r.segment<2>(row));
   }
+  return sliding;
+}
+
+bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
+{
+  solveApart(problem, r);
+  problem.W.apply(r, u);
+  u += problem.q;
+  if (residual(problem, u, r) <= stopping().tolerance)
+    return true;
+  if (!solveRowsApart(problem, velocity_))
+  {
+    r = velocity_;
+    problem.W.apply(r, u);
+    u += problem.q;
+  }
+  // r' W r from u = W r + q.
+  const double load = problem.q.dot(r);
+  const double power = r.dot(u) - load;
+  const double t = power > 0.0 ? std::clamp(-load / power, 0.0, 1.0) : 0.0;
   r *= t;
-  u = t * u + problem.q;
+  u = t * (u - problem.q) + problem.q;
   return true;
 }
 
@@ -128,7 +178,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
   best_r_ = result.solution.r;
-  best_value_ = criterion(problem, best_r_);
+  best_value_ = result.residual >= 0.0 ? result.residual : criterion(problem, best_r_);
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   SemismoothNewtonOptions newton;

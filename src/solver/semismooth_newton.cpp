@@ -400,6 +400,7 @@ void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& res
   {
     centre_ = r;
     const Inner inner = solveProximal(problem, result);
+    result.residual = best_value_;
     if (inner == Inner::CONVERGED)
     {
       result.status = SolverStatus::CONVERGED;

@@ -98,7 +98,11 @@ public:
   const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
 
 protected:
-  /** @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message. */
+  /**
+   * @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message.
+   * result.residual is the stopping criterion at that r, before and after, or negative when it is not known; it only
+   * saves evaluations, solve() judges for itself.
+   */
   virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
   /**
    * @brief Another object of this method with the same options, to keep the workspace of islands of another shape.
