@@ -9,6 +9,7 @@
 #include "frictional_contact_sim/solver/ds_newton.h"
 #include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
+#include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/one_contact.h"
 
 namespace frictional_contact_sim
@@ -19,6 +20,7 @@ namespace
 constexpr int STALL_WINDOW = 20;
 /// Above Newton's first proximal parameter, below its restart.
 constexpr double WATCHDOG_MIN = 1e-5;
+constexpr double QUICK_DECREASE = 1e-3;
 /// Newton on a small problem aims this far below the tolerance: its last step costs little, and a scene at rest then
 /// stays within the tolerance for many warm-started steps instead of drifting out of it at once.
 constexpr double NEWTON_MARGIN = 1e-2;
@@ -35,6 +37,7 @@ void PortfolioOptions::validate() const
 {
   require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
   require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
+  require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
   require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
   require(newton_steps >= 1, "newton_steps", newton_steps, 1);
   require(later_sweeps >= 1, "later_sweeps", later_sweeps, 1);
@@ -54,6 +57,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   gauss_seidel_->setOptions(sweeps);
   last_resort_.push_back(std::make_unique<FbNewtonSmoothed>());
   last_resort_.push_back(std::make_unique<DsNewton>());
+  without_factors_.push_back(std::make_unique<Haslinger>());
 }
 
 Portfolio::~Portfolio() = default;
@@ -174,6 +178,21 @@ bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen:
   return true;
 }
 
+/**
+ * First from a cold start: a first failure should cost one step, not a whole excursion, and a success is followed by a
+ * small parameter at once. Near a solution of a larger problem it is the other way round.
+ */
+SemismoothNewtonOptions Portfolio::newtonOptions(bool first)
+{
+  SemismoothNewtonOptions options;
+  if (first)
+  {
+    options.watchdog_min = WATCHDOG_MIN;
+    options.proximal_decrease = QUICK_DECREASE;
+  }
+  return options;
+}
+
 void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
@@ -181,22 +200,21 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   best_value_ = result.residual >= 0.0 ? result.residual : criterion(problem, best_r_);
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
-  SemismoothNewtonOptions newton;
-  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
-  // round.
-  newton.watchdog_min = newton_first ? WATCHDOG_MIN : 0.0;
-  newton_->setOptions(newton);
+  const bool newton = problem.W.rows() <= options_.newton_last_rows;
+  newton_->setOptions(newtonOptions(newton_first));
   if (!done)
     done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, NEWTON_MARGIN)
-                        : run(*gauss_seidel_, problem, options_.first_sweeps, result) ||
-                              run(*newton_, problem, options_.newton_steps, result);
-  newton.watchdog_min = 0.0;
-  newton_->setOptions(newton);
+                        : run(*gauss_seidel_, problem, options_.first_sweeps, result);
+  if (newton_first)
+    newton_->setOptions(newtonOptions(false));
+  else if (newton)
+    done = done || run(*newton_, problem, options_.newton_steps, result);
   for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
   {
-    done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result) ||
-           run(*newton_, problem, options_.newton_steps << round, result);
-    for (std::unique_ptr<Solver>& method : last_resort_)
+    done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result);
+    if (newton)
+      done = done || run(*newton_, problem, options_.newton_steps << round, result);
+    for (std::unique_ptr<Solver>& method : newton ? last_resort_ : without_factors_)
       done = done || run(*method, problem, options_.newton_steps << round, result);
   }
   result.solution.r = best_r_;

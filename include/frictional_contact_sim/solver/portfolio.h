@@ -7,7 +7,8 @@
  *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
  *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
- *      Fischer-Burmeister Newton and De Saxce's, in longer rounds
+ *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of all Newtons
+ *      Haslinger's fixed point, which needs products with W only
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
@@ -24,11 +25,13 @@ namespace frictional_contact_sim
 {
 class GaussSeidel;
 class AcNewton;
+struct SemismoothNewtonOptions;
 
 struct PortfolioOptions
 {
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
+  int newton_last_rows = 15000;  ///< above, nothing is factored: memory and time grow faster than the problem
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
@@ -57,6 +60,7 @@ protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
+  static SemismoothNewtonOptions newtonOptions(bool first);
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   static bool solveRowsApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
@@ -65,7 +69,8 @@ private:
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_;
-  std::vector<std::unique_ptr<Solver>> last_resort_;
+  std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
+  std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
   Eigen::VectorXd velocity_, best_r_;
   double best_value_ = 0.0;
   int used_ = 0;
