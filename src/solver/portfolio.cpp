@@ -20,7 +20,6 @@ namespace
 constexpr int STALL_WINDOW = 20;
 /// Above Newton's first proximal parameter, below its restart.
 constexpr double WATCHDOG_MIN = 1e-5;
-constexpr double QUICK_DECREASE = 1e-3;
 /// Newton on a small problem aims this far below the tolerance: its last step costs little, and a scene at rest then
 /// stays within the tolerance for many warm-started steps instead of drifting out of it at once.
 constexpr double NEWTON_MARGIN = 1e-2;
@@ -178,21 +177,6 @@ bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen:
   return true;
 }
 
-/**
- * First from a cold start: a first failure should cost one step, not a whole excursion, and a success is followed by a
- * small parameter at once. Near a solution of a larger problem it is the other way round.
- */
-SemismoothNewtonOptions Portfolio::newtonOptions(bool first)
-{
-  SemismoothNewtonOptions options;
-  if (first)
-  {
-    options.watchdog_min = WATCHDOG_MIN;
-    options.proximal_decrease = QUICK_DECREASE;
-  }
-  return options;
-}
-
 void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
@@ -201,14 +185,18 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
-  newton_->setOptions(newtonOptions(newton_first));
+  SemismoothNewtonOptions options;
+  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
+  // round.
+  options.watchdog_min = newton_first ? WATCHDOG_MIN : 0.0;
+  newton_->setOptions(options);
   if (!done)
     done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, NEWTON_MARGIN)
                         : run(*gauss_seidel_, problem, options_.first_sweeps, result);
-  if (newton_first)
-    newton_->setOptions(newtonOptions(false));
-  else if (newton)
+  if (!newton_first && newton)
     done = done || run(*newton_, problem, options_.newton_steps, result);
+  options.watchdog_min = 0.0;
+  newton_->setOptions(options);
   for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
   {
     done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result);

@@ -25,7 +25,6 @@ namespace frictional_contact_sim
 {
 class GaussSeidel;
 class AcNewton;
-struct SemismoothNewtonOptions;
 
 struct PortfolioOptions
 {
@@ -60,7 +59,6 @@ protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
-  static SemismoothNewtonOptions newtonOptions(bool first);
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   static bool solveRowsApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
