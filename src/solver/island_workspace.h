@@ -22,7 +22,6 @@ struct IslandSlot
   long last_used = 0;
   DelassusProblem problem;
   Eigen::VectorXd step_lengths;
-  Eigen::VectorXd velocity;  ///< u of the method's cold start
   SolverResult result;
   std::unique_ptr<Solver> method;  ///< a sibling of the solver; nullptr: the solver itself
 };

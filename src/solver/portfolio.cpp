@@ -120,54 +120,62 @@ void Portfolio::solveApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 
 namespace
 {
-/** One contact, row by row: -q_N / W_NN, and what would stop q_T within the disc. @return whether it is at its bound */
+/** Whether the impulse that would stop q_T, alone, exceeds the friction bound of the one that would stop q_N, alone. */
 template <int D>
-bool solveRows(const SquareMatrix<D>& W, const Vector<D>& q, double mu, Eigen::Ref<Vector<D>> r)
+bool wouldSlide(const SquareMatrix<D>& W, const Vector<D>& q, double mu)
 {
-  if (!(q[0] < 0.0 && W(0, 0) > 0.0))
-    return false;
-  r[0] = -q[0] / W(0, 0);
   const double tangential = (W.trace() - W(0, 0)) / (D - 1);
-  if (!(tangential > 0.0))
-    return false;
-  const Vector<D - 1> stopping = q.template tail<D - 1>() / -tangential;
-  r.template tail<D - 1>() = projectOntoBall<D - 1>(stopping, mu * r[0]);
-  return stopping.norm() > mu * r[0];
+  return q[0] < 0.0 && q.template tail<D - 1>().norm() * W(0, 0) > mu * -q[0] * tangential;
 }
-}  // namespace
 
-/** Every row of the Coulomb laws solved as if it were alone; other laws without impulse. @return whether one slides */
-bool Portfolio::solveRowsApart(const DelassusProblem& problem, Eigen::VectorXd& r)
+bool anyWouldSlide(const DelassusProblem& problem)
 {
-  r.setZero(problem.W.rows());
-  bool sliding = false;
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const Law& law = problem.laws[static_cast<std::size_t>(i)];
     const int row = problem.W.offset(i);
-    if (law.type == LawType::COULOMB_3D)
-      sliding |=
-          solveRows<3>(problem.W.diagonalBlock<3>(i), problem.q.segment<3>(row), law.coefficient, r.segment<3>(row));
-    else if (law.type == LawType::COULOMB_2D)
-      sliding |=
-          solveRows<2>(problem.W.diagonalBlock<2>(i), problem.q.segment<2>(row), law.coefficient, r.segment<2>(row));
+    if (law.type == LawType::COULOMB_3D &&
+        wouldSlide<3>(problem.W.diagonalBlock<3>(i), problem.q.segment<3>(row), law.coefficient))
+      return true;
+    if (law.type == LawType::COULOMB_2D &&
+        wouldSlide<2>(problem.W.diagonalBlock<2>(i), problem.q.segment<2>(row), law.coefficient))
+      return true;
   }
-  return sliding;
+  return false;
 }
 
-bool Portfolio::start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
+/** r_N = -q_N / W_NN where that is positive, nothing else. */
+void solveNormalsApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 {
-  solveApart(problem, r);
-  problem.W.apply(r, u);
-  u += problem.q;
-  if (residual(problem, u, r) <= stopping().tolerance)
-    return true;
-  if (!solveRowsApart(problem, velocity_))
+  r.setZero();
+  for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    r = velocity_;
+    const int row = problem.W.offset(i);
+    if (!problem.laws[static_cast<std::size_t>(i)].isCoulomb() || !(problem.q[row] < 0.0))
+      continue;
+    const double W =
+        problem.W.dimension(i) == 3 ? problem.W.diagonalBlock<3>(i)(0, 0) : problem.W.diagonalBlock<2>(i)(0, 0);
+    r[row] = W > 0.0 ? -problem.q[row] / W : 0.0;
+  }
+}
+}  // namespace
+
+bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
+{
+  if (attempt > 1)
+    return false;
+  const bool normals = attempt == 1 && !anyWouldSlide(problem);
+  if (normals)
+    solveNormalsApart(problem, r);
+  else if (attempt == 0)
+    solveApart(problem, r);
+  if (normals || attempt == 0)
+  {
     problem.W.apply(r, u);
     u += problem.q;
   }
+  if (attempt == 0)
+    return true;
   // r' W r from u = W r + q.
   const double load = problem.q.dot(r);
   const double power = r.dot(u) - load;

@@ -169,8 +169,8 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
     if (islands_->cold)
     {
       // As if the island were alone: the start of the whole may be scaled by what others need.
-      result.solution.r.setZero();
-      method.start(slot.problem, result.solution.r, slot.velocity);
+      method.solveAtOnce(slot.problem, result);
+      result.residual = method.criterion_;
     }
     method.doSolve(slot.problem, result);
   }

@@ -136,7 +136,7 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.doSolve(problem, result);
 }
 
-bool Solver::start(const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorXd&)
+bool Solver::start(int, const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorXd&)
 {
   return false;
 }
@@ -161,9 +161,14 @@ double Solver::solveAtOnce(const DelassusProblem& problem, SolverResult& result)
     solution.u = problem.q;
     return criterion_;
   }
-  if (!start(problem, solution.r, solution.u))
+  if (!start(0, problem, solution.r, solution.u))
     solution.u = problem.q;
-  return measure(problem, solution);
+  double value = measure(problem, solution);
+  for (int attempt = 1; !(value <= stopping_.tolerance && criterion_ <= stopping_.tolerance) &&
+                        start(attempt, problem, solution.r, solution.u);
+       ++attempt)
+    value = measure(problem, solution);
+  return value;
 }
 
 double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result)

@@ -50,17 +50,16 @@ public:
 protected:
   std::unique_ptr<Solver> sibling() const override;
   /**
-   * @brief Every law solved as if it were alone, when that is the answer. Otherwise that, or, where nothing slides,
-   * every row alone, scaled by the t <= 1 that minimises 1/2 r' W r + q' r. Rows alone hold no impulse that nothing
-   * asks for: the answer of a body at rest on several contacts stays the symmetric one of least norm, which a sweep of
-   * Gauss-Seidel would lose.
+   * @brief First every law solved as if it were alone, which may be the answer. Then that, or, where nothing would
+   * slide, the normal impulses alone, scaled by the t <= 1 that minimises 1/2 r' W r + q' r: without friction that
+   * nothing asks for the answer of a body at rest on several contacts stays the symmetric one of least norm, which a
+   * sweep of Gauss-Seidel would lose.
    */
-  bool start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u) override;
+  bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u) override;
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
-  static bool solveRowsApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 

@@ -112,10 +112,11 @@ protected:
   /** @brief To be called by setOptions() of a method that overrides sibling(). */
   void dropSiblings();
   /**
-   * @brief A method's own cold start, before islands are split: sets r, and u = W r + q with it.
-   * @return false = there is none (the default), r is untouched
+   * @brief A method's own cold starts, before islands are split: sets r, and u = W r + q with it.
+   * @param attempt 0, 1, ...; asked for the next one as long as none solves the problem; r and u hold the last one
+   * @return false = there is no such start, r and u are untouched (the default: r = 0 is the only one)
    */
-  virtual bool start(const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
+  virtual bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
   bool timeIsUp() const;
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
