@@ -81,7 +81,7 @@ def ratio_table(rows, target):
         only_ours += bool(ours and not theirs)
         only_theirs += bool(theirs and not ours)
         first = outcomes[0]
-        lines.append([problem, class_of(first), first["contacts"], f"{first['rows']}/{first['rank']}",
+        lines.append([problem, class_of(first), first["contacts"], f"{first['rows']}/{first['rank'] if int(first['rank']) > 0 else '-'}",
                       duration(float(ours["seconds"])) if ours else "unsolved",
                       duration(float(theirs["seconds"])) if theirs else "none in time",
                       f"{theirs['solver'].replace('siconos ', '')}, {theirs['variant']}" if theirs else "-", ratio])
@@ -162,8 +162,8 @@ def thesis_tables(rows):
 def exponent(points):
     """Slope of log y over log x, least squares."""
     logs = [(math.log(x), math.log(y)) for x, y in points if y > 0.0]
-    if len(logs) < 2:
-        return "-"
+    if len(logs) < 3:
+        return None
     mean_x, mean_y = (statistics.fmean(value) for value in zip(*logs))
     return "%.2f" % (sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs))
 
@@ -187,8 +187,10 @@ def scaling(rows):
         memory = exponent([(float(row["contacts"]), float(row["megabytes"])) for row in good])
         reduction = exponent([(float(row["contacts"]), float(row["reduction_seconds"])) for row in own
                               if int(row["contacts"]) >= 100 and 0.0 < float(row["reduction_seconds"]) < 1e9])
-        notes.append(f"`{solver}`: time grows as n^{times}, the reduction alone as n^{reduction}, memory as n^{memory} "
-                     f"(least squares in logarithms, converged runs from 100 contacts on).")
+        grows = [f"{name} grows as n^{value}" for name, value in
+                 (("time", times), ("the reduction alone", reduction), ("memory", memory)) if value is not None]
+        notes.append(f"`{solver}`: " + (", ".join(grows) or "fewer than three sizes converged, no exponent")
+                     + " (least squares in logarithms, converged runs from 100 contacts on).")
     return table(["method", "contacts", "velocities", "status", "iterations", "E", "reduction", "whole solve",
                   "memory [MB]"], lines) + "\n\n" + "\n".join(f"* {note}" for note in notes)
 

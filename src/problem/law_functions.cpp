@@ -74,7 +74,9 @@ double naturalMapError(const Law& law, const double* u, const double* r, double 
     return coulombError<3>(law.coefficient, u, r, rho, e);
   if (law.type == LawType::COULOMB_2D)
     return coulombError<2>(law.coefficient, u, r, rho, e);
-  const double error = law.type == LawType::BILATERAL ? *u : (*r - projectOntoLaw(law, *r - rho * *u)) / rho;
+  const double x = *r - rho * *u;
+  // projectOntoLaw would turn a NaN into the zero of an open row.
+  const double error = law.type == LawType::BILATERAL ? *u : std::isnan(x) ? x : (*r - projectOntoLaw(law, x)) / rho;
   if (e != nullptr)
     *e = error;
   return std::abs(error);

@@ -70,7 +70,7 @@ LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_
     if (errors != nullptr)
       (*errors)[index] = error;
     // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
-    if (!(error <= found.worst))
+    if (!(error <= found.worst) && !std::isnan(found.worst))
       found.worst = error;
     double square = 0.0;
     for (int k = row; k < row + dimension; ++k)
@@ -111,7 +111,7 @@ double GlobalResidual::value() const
 {
   double worst = law;
   for (const double part : {dynamics, bilateral})
-    if (!(part <= worst))
+    if (!(part <= worst) && !std::isnan(worst))
       worst = part;
   return worst;
 }
@@ -159,7 +159,7 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
       largest = std::max({largest, std::abs(entry.value() * solution.v[entry.col()]),
                           std::abs(entry.value() * data.mass_inverse_force[entry.col()])});
     }
-    if (!(std::abs(sum) <= worst))
+    if (!(std::abs(sum) <= worst) && !std::isnan(worst))
       worst = std::abs(sum);
   }
   residual.bilateral = largest > 0.0 ? worst / largest : worst;

@@ -24,8 +24,8 @@ double HertzLine::pressure(double x) const
 HertzLine hertzLine(double load, double radius, double reduced_modulus)
 {
   HertzLine hertz;
-  hertz.half_width = std::sqrt(4.0 * load * radius / (PI * reduced_modulus));
-  hertz.peak_pressure = 2.0 * load / (PI * hertz.half_width);
+  hertz.half_width = std::sqrt(4.0 * std::max(load, 0.0) * radius / (PI * reduced_modulus));
+  hertz.peak_pressure = hertz.half_width > 0.0 ? 2.0 * load / (PI * hertz.half_width) : 0.0;
   return hertz;
 }
 

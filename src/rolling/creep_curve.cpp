@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -57,6 +58,12 @@ double bisect(double low, double high, int halvings, Predicate above)
   }
   return high;
 }
+std::string toText(double value)
+{
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 }  // namespace
 
 CreepCurve computeCreepCurve(const ContactFlexibility& flexibility, double friction, double load,
@@ -79,12 +86,18 @@ CreepCurve computeCreepCurve(const ContactFlexibility& flexibility, double frict
     double reach = at_rest > 0.0 ? -creepage_unit : creepage_unit;
     for (int i = 0; i < WIDENINGS && (tracer.share(reach) > 0.0) == (at_rest > 0.0); ++i)
       reach *= 1.5;
+    if ((tracer.share(reach) > 0.0) == (at_rest > 0.0))
+      throw std::runtime_error("creep curve: no free rolling up to a creepage of " + toText(reach) +
+                               ", expected a sign change of Q");
     curve.free_creepage =
         bisect(std::min(0.0, reach), std::max(0.0, reach), HALVINGS, [&](double xi) { return tracer.share(xi) > 0.0; });
   }
   double saturation = creepage_unit;
   for (int i = 0; i < WIDENINGS && tracer.share(curve.free_creepage + saturation) < FULL_SLIP; ++i)
     saturation *= 1.5;
+  if (tracer.share(curve.free_creepage + saturation) < FULL_SLIP)
+    throw std::runtime_error("creep curve: no full slip up to a creepage of " + toText(saturation) +
+                             ", expected it within Carter's saturation times " + toText(std::pow(1.5, WIDENINGS)));
   saturation =
       bisect(0.0, saturation, HALVINGS, [&](double xi) { return tracer.share(curve.free_creepage + xi) >= FULL_SLIP; });
   for (int i = 0; i < options.points; ++i)

@@ -80,7 +80,8 @@ FrictionalContact FrictionalLcp::solve(const Eigen::VectorXd& d_N, const Eigen::
 {
   const Eigen::Index n = flexibility_.size();
   Eigen::VectorXd b = vector(d_N, d_T);
-  const double depth = std::max(std::max(-d_N.minCoeff(), 0.0), std::numeric_limits<double>::min());
+  const double largest = std::max(-d_N.minCoeff(), d_T.lpNorm<Eigen::Infinity>());
+  const double depth = largest > 0.0 ? largest : 1.0;
   b.head(n) /= depth;
   b.tail(2 * n) *= unit_ / depth;
   LcpOptions options;
@@ -95,6 +96,8 @@ FrictionalContact FrictionalLcp::solve(const Eigen::VectorXd& d_N, const Eigen::
   // vanishing natural map proves the answer whatever the path said.
   if (contact.residual <= ROUND_OFF)
     contact.status = LcpStatus::SOLVED;
+  else if (contact.status == LcpStatus::SOLVED)
+    contact.status = LcpStatus::NUMERICAL_FAILURE;
   contact.r_N = lcp.x.head(n) * (depth / unit_);
   contact.y_N = lcp.y.head(n) * depth;
   contact.y_T = (lcp.x.segment(n, n) - lcp.x.tail(n)) * depth;

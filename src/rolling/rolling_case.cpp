@@ -101,12 +101,14 @@ void rollOn(const RollingCase& study, const FrictionalLcp& lcp, const RunHooks& 
       study.motion == Motion::TRANSIENT
           ? roll(lcp, run.gap, run.approach, run.contact.u_T, study.creepage, options)
           : rollSteadily(run.flexibility, run.friction, run.gap, run.approach, study.creepage, options);
+  run.converged = result.steady;
+  if (result.steps == 0)
+    return;  // interrupted before the first step: what was pressed stays
   run.contact = result.contact;
   run.slip = result.slip;
   run.history = result.history;
   run.approach = result.approach;
   run.shift = 0.0;
-  run.converged = result.steady;
 }
 
 RollingRun runOne(const RollingCase& study, double friction, double lower_modulus, const RunHooks& hooks)
@@ -124,6 +126,7 @@ RollingRun runOne(const RollingCase& study, double friction, double lower_modulu
   run.gap = makeGap(study, run.flexibility.x);
 
   start = processSeconds();
+  run.slip.setZero(run.gap.size());
   const FrictionalLcp lcp(run.flexibility, Eigen::VectorXd::Constant(1, friction));
   const double Q = study.motion == Motion::STATIC && study.load ? study.load_share * friction * *study.load : 0.0;
   press(study, lcp, Q, hooks, run);

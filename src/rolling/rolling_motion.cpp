@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/rolling/rolling_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -7,6 +8,9 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// Tangential tractions below this share of the largest pressure are none: what settles without friction is round-off.
+constexpr double FRICTIONLESS = 1e-6;
+
 /// Spacing of equally spaced nodes. Chords of a small arc differ in x by its second order, which is allowed for.
 double spacing(const Eigen::VectorXd& x)
 {
@@ -37,6 +41,7 @@ void requireFreeLeadingNode(const FrictionalContact& contact)
 }
 
 /// One solution at the given approach, or with the approach adjusted to the load when that is positive.
+/// A load that is not met is a NUMERICAL_FAILURE.
 FrictionalContact solveStep(const FrictionalLcp& lcp, const Eigen::VectorXd& gap, const Eigen::VectorXd& d_T,
                             const RollingOptions& options, double& approach)
 {
@@ -50,10 +55,13 @@ FrictionalContact solveStep(const FrictionalLcp& lcp, const Eigen::VectorXd& gap
     contact = lcp.solve(gap.array() - approach, d_T, options.interrupted);
     const double missing = options.load - contact.P;
     const double slope = -lcp.loadDerivative(contact)(0, 0);
-    if (contact.status != LcpStatus::SOLVED || std::abs(missing) <= LOAD_TOLERANCE * options.load || !(slope > 0.0))
+    if (contact.status != LcpStatus::SOLVED || std::abs(missing) <= LOAD_TOLERANCE * options.load)
+      return contact;
+    if (!(slope > 0.0))
       break;
     approach += missing / slope;
   }
+  contact.status = LcpStatus::NUMERICAL_FAILURE;
   return contact;
 }
 }  // namespace
@@ -89,7 +97,8 @@ RollingResult roll(const FrictionalLcp& lcp, const Eigen::VectorXd& gap, double 
     u_T = result.contact.u_T;
     result.history.push_back(result.contact.Q);
     ++result.steps;
-    const double limit = (lcp.friction().array() * result.contact.r_N.array()).maxCoeff();
+    const double limit = std::max((lcp.friction().array() * result.contact.r_N.array()).maxCoeff(),
+                                  FRICTIONLESS * result.contact.r_N.maxCoeff());
     const double change = (result.contact.r_T - last).lpNorm<Eigen::Infinity>();
     last = result.contact.r_T;
     if (options.progress)

@@ -81,6 +81,12 @@ void CadouxBroyden::doSolve(const DelassusProblem& problem, SolverResult& result
     if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
       return;
     const Eigen::VectorXd G = map_.value() - s;
+    if (!std::isfinite(G.norm()) && best_F.size() == 0)
+    {
+      result.status = SolverStatus::NUMERICAL_FAILURE;
+      result.message = "the first inner problem has no finite answer";
+      return;
+    }
     if (G.norm() < best)
     {
       best = G.norm();

@@ -39,6 +39,14 @@ double restingError(const DelassusProblem& problem)
   return worst;
 }
 
+/// Puts a value back when the scope is left, by an exception too.
+struct RestoreOnExit
+{
+  double& place;
+  const double value;
+  ~RestoreOnExit() { place = value; }
+};
+
 void checkGuess(const Solution& guess, int rows)
 {
   if (guess.r.size() != rows)
@@ -237,11 +245,16 @@ void Solver::judge(double residual, double tolerance, SolverResult& result) cons
     result.status = SolverStatus::CONVERGED;
     result.message.clear();
   }
+  else if (residual <= tolerance)
+  {
+    if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
+      result.status = SolverStatus::STAGNATED;
+    result.message = "impulses run away: there may be no solution";
+  }
   else if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
   {
     result.status = SolverStatus::STAGNATED;
-    result.message = residual <= tolerance ? "impulses run away: there may be no solution"
-                                           : "the method reported convergence, the residual does not confirm it";
+    result.message = "the method reported convergence, the residual does not confirm it";
   }
   result.seconds = secondsSinceStart();
 }
@@ -284,6 +297,7 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   global_.mass_inverse_force = reduction_->massInverseForce();
 
   const double tolerance = stopping_.tolerance;
+  const RestoreOnExit restore{stopping_.tolerance, tolerance};
   double local_value = solveLocal(local, guess, result);
   reduction_->recover(problem, result.solution);
   GlobalResidual value = globalResidual(problem, global_, result.solution);
@@ -300,7 +314,6 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
     reduction_->recover(problem, result.solution);
     value = globalResidual(problem, global_, result.solution);
   }
-  stopping_.tolerance = tolerance;
   judge(value.value(), tolerance, result);
 }
 

@@ -227,6 +227,9 @@ int run(Arguments& arguments)
   std::ofstream file;
   if (!arguments.output.empty())
   {
+    for (const std::string& input : files)
+      if (fs::exists(arguments.output) && fs::exists(input) && fs::equivalent(arguments.output, input))
+        throw std::invalid_argument("--output " + arguments.output + " is an input itself, expected another file");
     file.open(arguments.output);
     if (!file)
       throw std::runtime_error("cannot write " + arguments.output);
@@ -254,7 +257,7 @@ int main(int argc, char** argv)
   app.add_option("--time-limit", arguments.stopping.time_limit, "wall clock of a solve [s], 0 = none")
       ->capture_default_str();
   app.add_option("--repeat", arguments.repeat, "cold solves; both times are their medians")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--output", arguments.output, "CSV file (default: standard output)");
   return frictional_contact_sim::tools::runTool(app, argc, argv, [&] { return run(arguments); });

@@ -25,7 +25,7 @@ struct Arguments
   RandomFamilyOptions random;
   RigidFamilyOptions rigid;
   RodFamilyOptions rods;
-  double friction = -1.0;  ///< both ends of the range; negative: not given
+  std::optional<double> friction;  ///< both ends of the range
   int contacts = 1000;
   int width = 0;
   int levels = 5;
@@ -107,7 +107,7 @@ void addRandomOptions(CLI::App& command, RandomFamilyOptions& options)
       ->capture_default_str();
   command.add_option("--friction-min", options.friction_min, "uniform from here [-]")->capture_default_str();
   command.add_option("--friction-max", options.friction_max, "to here [-]")->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
 }
 
 void addRigidOptions(CLI::App& command, Arguments& arguments)
@@ -119,7 +119,7 @@ void addRigidOptions(CLI::App& command, Arguments& arguments)
       ->capture_default_str();
   command.add_option("--time-step", options.time_step, "[s]")->capture_default_str();
   command.add_option("--tilt", options.tilt, "gravity from the vertical [rad]")->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
 }
 
 void addRodOptions(CLI::App& command, RodFamilyOptions& options)
@@ -132,14 +132,14 @@ void addRodOptions(CLI::App& command, RodFamilyOptions& options)
   command.add_option("--spacing", options.spacing, "between neighbouring roots [m]")->capture_default_str();
   command.add_option("--agitation", options.agitation, "deviation of the velocities before the step [1/(m s)]")
       ->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
 }
 
 RigidFamilyOptions rigidOptions(const Arguments& arguments)
 {
   RigidFamilyOptions options = arguments.rigid;
-  if (arguments.friction != -1.0)
-    options.friction_min = options.friction_max = arguments.friction;
+  if (arguments.friction)
+    options.friction_min = options.friction_max = *arguments.friction;
   return options;
 }
 

@@ -78,6 +78,8 @@ void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
             << "\n  LCP: residual " << contact.residual << "   pivots " << contact.pivots << "   CPU "
             << run.flexibility_seconds << " s flexibility, " << run.contact_seconds << " s contact"
             << (run.converged ? "\n" : "\n  NOT CONVERGED\n");
+  if (contact.states.front() != fcs::NodeState::SEPARATION || contact.states.back() != fcs::NodeState::SEPARATION)
+    std::cout << "  the contact reaches the edge of its zone: a wider half_width is needed\n";
   if (study.motion == fcs::Motion::TRANSIENT)
     std::cout << "  " << run.history.size() << " steps of one node\n";
   if (run.curve)

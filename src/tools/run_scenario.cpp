@@ -203,7 +203,7 @@ int runAll(const Options& options)
     std::filesystem::create_directories(options.dump);
   std::unique_ptr<fcs::Simulator> simulator;
   std::vector<RunSummary> runs;
-  for (int i = 0; i < options.repeat; ++i)
+  for (int i = 0; i < options.repeat && (i == 0 || interrupted == 0); ++i)
   {
     simulator = std::make_unique<fcs::Simulator>(scenario);
     if (i == 0)

@@ -150,6 +150,15 @@ TEST(ResidualTest, IsZeroWithoutRowsAndNotANumberIsNeverSmall)
   const DelassusProblem problem = oneContact({0, 0, 0}, {2.0, 0.6, -0.5});
   const Eigen::Vector3d broken(2.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
   EXPECT_FALSE(evaluateResidual(problem, broken) <= 1e30);
+  // In the first of two laws too, where the finite error of the second follows.
+  Eigen::VectorXd u(2), r(2);
+  u << std::numeric_limits<double>::quiet_NaN(), 1.0;
+  r << 1.0, 1.0;
+  const std::vector<Law> laws(2, Law{LawType::UNILATERAL, 0.0});
+  EXPECT_FALSE(lawResidual(laws, Eigen::Vector2d(1.0, 1.0), 1.0, u, r) <= 1e30);
+  GlobalResidual broken_first;
+  broken_first.law = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(broken_first.value() <= 1e30);
 }
 
 TEST(ResidualTest, LargestEigenvaluesAgreeWithTheirCharacteristicEquation)

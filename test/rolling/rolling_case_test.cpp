@@ -220,3 +220,46 @@ TEST(RollingCaseTest, RepeatedRunsGiveTheSameBits)
     EXPECT_EQ(first[i].contact.r_T, second[i].contact.r_T);
   }
 }
+
+TEST(RollingCaseTest, WithoutTouchingThereAreNoForces)
+{
+  // Twenty nodes lie beside the lowest point, at gaps above 1e-7 m: an approach of 1e-9 m presses none of them.
+  const std::vector<RollingRun> runs = runRollingCase(parseRollingCase(
+      HEAD + "nodes: 20\nhalf_width: 0.02\nflexibility: half_plane\ndisplacement: {normal: 1.0e-9}\n", "case.yaml"));
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_TRUE(runs[0].converged);
+  EXPECT_EQ(runs[0].contact.P, 0.0);
+  EXPECT_LT(runs[0].contact.residual, 1e-12);
+}
+
+TEST(RollingCaseTest, FrictionlessRollingIsSteadyAtOnce)
+{
+  const std::vector<RollingRun> runs = runRollingCase(parseRollingCase(
+      "upper: {young_modulus: 94500, poisson_ratio: 0.1}\nfriction: 0.0\nnodes: 40\n"
+      "flexibility: half_plane\nload: {normal: 100.0}\nrolling: {motion: transient, creepage: 0.001}\n",
+      "case.yaml"));
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_TRUE(runs[0].converged);
+  EXPECT_EQ(runs[0].history.size(), 2u);
+  EXPECT_NEAR(runs[0].contact.P, 100.0, 1e-7);
+}
+
+TEST(RollingCaseTest, AnInterruptedRunCanBeWrittenWhereverItStopped)
+{
+  const RollingCase study = parseRollingCase(
+      HEAD +
+          "nodes: 30\nflexibility: half_plane\nload: {normal: 100.0}\nrolling: {motion: transient, creepage: 0.002}\n",
+      "case.yaml");
+  const std::string folder = testing::TempDir() + "interrupted";
+  std::filesystem::create_directories(folder);
+  for (const int calls : {0, 1, 2, 5, 20, 60})
+  {
+    int asked = 0;
+    RunHooks hooks;
+    hooks.interrupted = [&] { return asked++ >= calls; };
+    const std::vector<RollingRun> runs = runRollingCase(study, hooks);
+    for (const RollingRun& run : runs)
+      EXPECT_FALSE(run.converged) << calls;
+    writeRollingFiles(study, runs, folder);
+  }
+}
