@@ -6,17 +6,23 @@ namespace frictional_contact_sim
 {
 namespace
 {
+template <int D>
+double length(double x, double y)
+{
+  return D == 3 ? std::sqrt(x * x + y * y) : std::abs(x);
+}
+
 /// r/rho - P(r/rho - u~), the projection written out: this runs for every contact in every iteration of every method.
 /// Divided by rho before projecting (the cone is a cone): no huge intermediate values when rho is large.
 template <int D>
 double coulombError(double mu, const double* u, const double* r, double rho, double* e)
 {
   const double u1 = u[1], u2 = D == 3 ? u[D - 1] : 0.0;
-  const double shifted = u[0] + mu * std::sqrt(u1 * u1 + u2 * u2);
+  const double shifted = u[0] + mu * length<D>(u1, u2);
   const double inverse = 1.0 / rho;
   const double r0 = inverse * r[0], r1 = inverse * r[1], r2 = D == 3 ? inverse * r[D - 1] : 0.0;
   const double y0 = r0 - shifted, y1 = r1 - u1, y2 = r2 - u2;
-  const double tangential = std::sqrt(y1 * y1 + y2 * y2);
+  const double tangential = length<D>(y1, y2);
   double e0 = r0, e1 = r1, e2 = r2;  // y in the polar cone: its projection is zero
   if (y0 >= 0.0 && tangential <= mu * y0)
   {

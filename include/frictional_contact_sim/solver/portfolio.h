@@ -30,7 +30,7 @@ struct PortfolioOptions
 {
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
-  int newton_last_rows = 15000;  ///< above, nothing is factored: memory and time grow faster than the problem
+  int newton_last_rows = 6000;  ///< above, nothing is factored: memory and time grow faster than the problem
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
