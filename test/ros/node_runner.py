@@ -33,7 +33,8 @@ class Node:
             rospy.set_param(NAME, parameters)
         if robot_description is not None:
             rospy.set_param("/robot_description", robot_description)
-        self.log = tempfile.TemporaryFile(mode="w+")
+        # Read through a handle of its own: seeking in the one the node writes to would move its writes too.
+        self.log = tempfile.NamedTemporaryFile(mode="w")
         environment = dict(os.environ, ROSCONSOLE_FORMAT="[${severity}] ${message}")
         self.process = subprocess.Popen(["rosrun", "frictional_contact_sim", "simulator_node"], stderr=self.log,
                                         stdout=subprocess.DEVNULL, env=environment)
@@ -52,9 +53,8 @@ class Node:
         return self.wait(timeout)
 
     def stderr(self):
-        self.log.flush()
-        self.log.seek(0)
-        return self.log.read()
+        with open(self.log.name) as log:
+            return log.read()
 
     def lines(self, severity):
         """Messages of one severity, without colours."""
