@@ -30,6 +30,13 @@ void require(bool condition, const char* name, int value, int least)
     throw std::invalid_argument(std::string("portfolio.") + name + " is " + std::to_string(value) +
                                 ", expected >= " + std::to_string(least));
 }
+
+/** u = W r + q. */
+void relativeVelocity(const DelassusProblem& problem, const Eigen::VectorXd& r, Eigen::VectorXd& u)
+{
+  problem.W.apply(r, u);
+  u += problem.q;
+}
 }  // namespace
 
 void PortfolioOptions::validate() const
@@ -75,8 +82,7 @@ std::unique_ptr<Solver> Portfolio::sibling() const
 
 double Portfolio::criterion(const DelassusProblem& problem, const Eigen::VectorXd& r)
 {
-  problem.W.apply(r, velocity_);
-  velocity_ += problem.q;
+  relativeVelocity(problem, r, velocity_);
   return residual(problem, velocity_, r);
 }
 
@@ -162,20 +168,19 @@ void solveNormalsApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 
 bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u)
 {
+  if (attempt == 0)
+  {
+    solveApart(problem, r);
+    relativeVelocity(problem, r, u);
+    return true;
+  }
   if (attempt > 1)
     return false;
-  const bool normals = attempt == 1 && !anyWouldSlide(problem);
-  if (normals)
-    solveNormalsApart(problem, r);
-  else if (attempt == 0)
-    solveApart(problem, r);
-  if (normals || attempt == 0)
+  if (!anyWouldSlide(problem))
   {
-    problem.W.apply(r, u);
-    u += problem.q;
+    solveNormalsApart(problem, r);
+    relativeVelocity(problem, r, u);
   }
-  if (attempt == 0)
-    return true;
   // r' W r from u = W r + q.
   const double load = problem.q.dot(r);
   const double power = r.dot(u) - load;

@@ -1,10 +1,8 @@
 #include "frictional_contact_sim/solver/semismooth_newton.h"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "frictional_contact_sim/problem/law_functions.h"
@@ -17,8 +15,6 @@ namespace
 constexpr double INNER_SHARE = 0.1;
 /// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
 constexpr double ZERO_DIAGONAL = 1e-14;
-/// A diagonal entry of at least this share of the largest in its column is taken as the pivot: less fill.
-constexpr double PIVOT_THRESHOLD = 0.1;
 
 void require(bool condition, const char* name, double value, const char* expected)
 {
@@ -43,54 +39,6 @@ void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_
 }
 }  // namespace
 
-/** Factorization of large systems; the pattern is analysed anew only when the active set changes. */
-struct SemismoothNewton::Sparse
-{
-  using Matrix = Eigen::SparseMatrix<double>;
-  Matrix matrix;
-  std::vector<int> next;  ///< per column, where its next entry goes
-  std::vector<int> columns, rows;  ///< pattern of the last analysis
-  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
-
-  void countColumns(const DelassusProblem& problem, const std::vector<int>& position, int size);
-  void analyse();
-};
-
-/** Sets the matrix's shape and column starts: one entry for every stored entry of W with active row and column. */
-void SemismoothNewton::Sparse::countColumns(const DelassusProblem& problem, const std::vector<int>& position, int size)
-{
-  next.assign(static_cast<std::size_t>(size) + 1, 0);
-  for (int i = 0; i < problem.W.blocks(); ++i)
-    if (position[static_cast<std::size_t>(problem.W.offset(i))] >= 0)
-      problem.W.visitRow(i,
-                         [&](int column, const double*, int)
-                         {
-                           const int target = position[static_cast<std::size_t>(column)];
-                           if (target >= 0)
-                             next[static_cast<std::size_t>(target) + 1] += problem.W.dimension(i);
-                         });
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  matrix.resize(size, size);
-  matrix.resizeNonZeros(next.back());
-  std::copy(next.begin(), next.end(), matrix.outerIndexPtr());
-}
-
-/** Orders the columns for the factorization, when the pattern is not that of the last call. */
-void SemismoothNewton::Sparse::analyse()
-{
-  const int* const outer = matrix.outerIndexPtr();
-  const int* const inner = matrix.innerIndexPtr();
-  const int* const outer_end = outer + matrix.cols() + 1;
-  const int* const inner_end = inner + matrix.nonZeros();
-  if (std::equal(outer, outer_end, columns.begin(), columns.end()) &&
-      std::equal(inner, inner_end, rows.begin(), rows.end()))
-    return;
-  columns.assign(outer, outer_end);
-  rows.assign(inner, inner_end);
-  lu.setPivotThreshold(PIVOT_THRESHOLD);
-  lu.analyzePattern(matrix);
-}
-
 void SemismoothNewtonOptions::validate() const
 {
   require(proximal_start > 0.0, "proximal_start", proximal_start, "> 0");
@@ -106,14 +54,6 @@ void SemismoothNewtonOptions::validate() const
   require(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "sufficient_decrease", sufficient_decrease,
           "in (0, 0.5)");
 }
-
-SemismoothNewton::SemismoothNewton(std::string name, const ContactMap& map, const SemismoothNewtonOptions& options)
-  : Solver(std::move(name)), map_(map), options_(options), sparse_(std::make_unique<Sparse>())
-{
-  options_.validate();
-}
-
-SemismoothNewton::~SemismoothNewton() = default;
 
 void SemismoothNewton::setOptions(const SemismoothNewtonOptions& options)
 {
@@ -186,132 +126,6 @@ double SemismoothNewton::evaluate(const DelassusProblem& problem, const Eigen::V
       merit += (f_[k] * weight_[k]) * (f_[k] * weight_[k]);
   }
   return merit;
-}
-
-bool SemismoothNewton::direction(const DelassusProblem& problem)
-{
-  // Laws with A_i = 0 and B_i = -I (open contacts, clipped rows) have dr_i = f_i: they leave the system.
-  active_.clear();
-  for (int i = 0; i < problem.W.blocks(); ++i)
-  {
-    const int d = problem.W.dimension(i);
-    const double* by_u = &by_u_[9 * static_cast<std::size_t>(i)];
-    const bool fixed = std::all_of(by_u, by_u + d * d, [](double value) { return value == 0.0; });
-    for (int row = problem.W.offset(i); row < problem.W.offset(i) + d; ++row)
-    {
-      position_[static_cast<std::size_t>(row)] = fixed ? -1 : static_cast<int>(active_.size());
-      if (!fixed)
-        active_.push_back(row);
-    }
-    if (!fixed)
-      continue;
-    // B_i dr = -f with B_i = -I but for the coupling of a clipped friction to its normal impulse.
-    const int row = problem.W.offset(i);
-    const double* by_r = &by_r_[9 * static_cast<std::size_t>(i)];
-    step_[row] = -f_[row] / by_r[0];
-    for (int k = 1; k < d; ++k)
-      step_[row + k] = (f_[row + k] + by_r[d * k] * step_[row]) / -by_r[d * k + k];
-  }
-  const auto size = static_cast<Eigen::Index>(active_.size());
-  if (size == 0)
-    return true;
-  if (!problem.W.isDense() && size > DENSE_LIMIT ? !solveSparse(problem) : !solveDense(problem))
-    return false;
-  if (!rhs_.head(size).allFinite())
-    return false;
-  for (Eigen::Index k = 0; k < size; ++k)
-    step_[active_[static_cast<std::size_t>(k)]] = rhs_[k];
-  return true;
-}
-
-/**
- * The rows of law i in the reduced system, D rows: calls sink(column, D values) for every active column of W,
- * ascending, with A_i (W_ij + alpha D) + B_i, and moves the columns of inactive laws, whose step is known, to the
- * right-hand side.
- */
-template <int D, typename Sink>
-void SemismoothNewton::reducedRows(const DelassusProblem& problem, int i, Sink sink)
-{
-  using Rows = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> A(&by_u_[9 * static_cast<std::size_t>(i)]);
-  const Eigen::Map<const Rows> B(&by_r_[9 * static_cast<std::size_t>(i)]);
-  const int row = problem.W.offset(i);
-  const int first = position_[static_cast<std::size_t>(row)];
-  const double shift = alpha_ * weight_[row];
-  Vector<D> right = -f_.segment<D>(row);
-  problem.W.visitRow(i,
-                     [&](int column, const double* w, int stride)
-                     {
-                       Vector<D> w_column;
-                       for (int k = 0; k < D; ++k)
-                         w_column[k] = w[k * stride];
-                       Vector<D> value = A * w_column;
-                       const int target = position_[static_cast<std::size_t>(column)];
-                       if (target < 0)
-                       {
-                         right -= value * step_[column];
-                         return;
-                       }
-                       if (column >= row && column < row + D)
-                         value += B.col(column - row) + shift * A.col(column - row);
-                       sink(target, value);
-                     });
-  rhs_.segment<D>(first) = right;
-}
-
-template <typename Sink>
-void SemismoothNewton::assemble(const DelassusProblem& problem, Sink sink)
-{
-  for (int i = 0; i < problem.W.blocks(); ++i)
-  {
-    const int first = position_[static_cast<std::size_t>(problem.W.offset(i))];
-    if (first < 0)
-      continue;
-    const auto add = [&](int column, const auto& values) { sink(first, column, values); };
-    if (problem.W.dimension(i) == 3)
-      reducedRows<3>(problem, i, add);
-    else if (problem.W.dimension(i) == 2)
-      reducedRows<2>(problem, i, add);
-    else
-      reducedRows<1>(problem, i, add);
-  }
-}
-
-bool SemismoothNewton::solveDense(const DelassusProblem& problem)
-{
-  const auto size = static_cast<Eigen::Index>(active_.size());
-  Eigen::Map<Eigen::MatrixXd> jacobian = lu_.start(static_cast<int>(size));
-  assemble(problem, [&](int row, int column, const auto& values)
-           { jacobian.col(column).template segment<std::decay_t<decltype(values)>::RowsAtCompileTime>(row) = values; });
-  if (!lu_.factor())
-    return false;
-  lu_.solve(rhs_.head(size));
-  return true;
-}
-
-bool SemismoothNewton::solveSparse(const DelassusProblem& problem)
-{
-  const auto size = static_cast<Eigen::Index>(active_.size());
-  sparse_->countColumns(problem, position_, static_cast<int>(size));
-  sparse_->next.assign(sparse_->matrix.outerIndexPtr(), sparse_->matrix.outerIndexPtr() + size);
-  int* const rows = sparse_->matrix.innerIndexPtr();
-  double* const entries = sparse_->matrix.valuePtr();
-  assemble(problem,
-           [&](int row, int column, const auto& values)
-           {
-             int& place = sparse_->next[static_cast<std::size_t>(column)];
-             for (Eigen::Index k = 0; k < values.size(); ++k, ++place)
-             {
-               rows[place] = row + static_cast<int>(k);
-               entries[place] = values[k];
-             }
-           });
-  sparse_->analyse();
-  sparse_->lu.factorize(sparse_->matrix);
-  if (sparse_->lu.info() != Eigen::Success)
-    return false;
-  rhs_.head(size) = sparse_->lu.solve(rhs_.head(size));
-  return true;
 }
 
 double SemismoothNewton::lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r)

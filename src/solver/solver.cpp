@@ -12,8 +12,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// A stopping criterion that nobody has evaluated.
-constexpr double UNKNOWN = -1.0;
 /// As in problem/residual.h [m/s].
 constexpr double VELOCITY_FLOOR = 1e-12;
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.

@@ -251,14 +251,7 @@ int main(int argc, char** argv)
   app.add_option("FILES", arguments.inputs, "FCLib files, or folders of *.hdf5; never changed")->required();
   app.add_option("--solvers", arguments.solvers, "names separated by commas (default: all; see fclib_solve)")
       ->delimiter(',');
-  app.add_option("--tolerance", arguments.stopping.tolerance, "on the residual E [-]")->capture_default_str();
-  app.add_option("--max-iterations", arguments.stopping.max_iterations, "iterations of a method")
-      ->capture_default_str();
-  app.add_option("--time-limit", arguments.stopping.time_limit, "wall clock of a solve [s], 0 = none")
-      ->capture_default_str();
-  app.add_option("--repeat", arguments.repeat, "cold solves; both times are their medians")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  tools::addSolveOptions(app, arguments.stopping, arguments.repeat);
   app.add_option("--output", arguments.output, "CSV file (default: standard output)");
   return frictional_contact_sim::tools::runTool(app, argc, argv, [&] { return run(arguments); });
 }

@@ -220,14 +220,7 @@ int main(int argc, char** argv)
   app.add_option("--operator", arguments.operator_name,
                  "storage of W: automatic, dense, sparse; matrix_free (global files, methods that use products)")
       ->capture_default_str();
-  app.add_option("--tolerance", arguments.stopping.tolerance, "on the residual E [-]")->capture_default_str();
-  app.add_option("--max-iterations", arguments.stopping.max_iterations, "iterations of the method")
-      ->capture_default_str();
-  app.add_option("--time-limit", arguments.stopping.time_limit, "wall clock of a solve [s], 0 = none")
-      ->capture_default_str();
-  app.add_option("--repeat", arguments.repeat, "cold solves; seconds is their median")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  tools::addSolveOptions(app, arguments.stopping, arguments.repeat);
   app.add_option("--output", arguments.output, "write the problem with its solution here");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
   app.add_flag("--list-solvers", arguments.list, "list the methods and leave");

@@ -1,8 +1,5 @@
 // rolling_contact FILE.yaml: solves a rolling contact case, prints a summary, writes CSV files and creep curves.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +7,7 @@
 #include "frictional_contact_sim/rolling/closed_forms.h"
 #include "frictional_contact_sim/rolling/core_comparison.h"
 #include "frictional_contact_sim/rolling/rolling_case.h"
+#include "tool_support.h"
 
 namespace fcs = frictional_contact_sim;
 
@@ -23,39 +21,6 @@ struct Options
   std::string output;
   std::vector<std::string> compare;
   int nodes = 0;
-};
-
-/** A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
-class Progress
-{
-public:
-  Progress() : start_(std::chrono::steady_clock::now()), terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~Progress()
-  {
-    if (last_ >= 0)
-      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r' << std::flush;
-  }
-  /** The share done so far is shown again, so that a long first problem has a bar as well. */
-  void refresh() { update(share_); }
-  void update(double share)
-  {
-    share_ = share;
-    const auto percent = static_cast<long>(100.0 * share);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (!terminal_ || seconds < 2.0 || percent == last_)
-      return;
-    last_ = percent;
-    const auto filled = static_cast<std::size_t>(percent * WIDTH / 100);
-    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
-              << std::flush;
-  }
-
-private:
-  static constexpr long WIDTH = 40;
-  std::chrono::steady_clock::time_point start_;
-  bool terminal_;
-  double share_ = 0.0;
-  long last_ = -1;
 };
 
 void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
@@ -113,12 +78,13 @@ int run(const Options& options)
     study.nodes = options.nodes;
   std::vector<fcs::RollingRun> runs;
   {
-    Progress progress;
+    fcs::tools::ProgressBar progress(100);
+    long percent = 0;
     fcs::RunHooks hooks;
-    hooks.progress = [&progress](double share) { progress.update(share); };
-    hooks.interrupted = [&progress]()
+    hooks.progress = [&](double share) { progress.update(percent = static_cast<long>(100.0 * share)); };
+    hooks.interrupted = [&]()
     {
-      progress.refresh();
+      progress.update(percent);  // a long first problem has a bar as well
       return interrupted != 0;
     };
     runs = fcs::runRollingCase(study, hooks);
@@ -141,6 +107,25 @@ int run(const Options& options)
     std::cerr << "rolling_contact: interrupted after " << runs.size() << " runs\n";
   return converged ? 0 : 1;
 }
+
+/** What ends a computation is not bad input: exit code 1. A folder that cannot be written is. */
+int runOrReport(const Options& options)
+{
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  try
+  {
+    return run(options);
+  }
+  catch (const std::filesystem::filesystem_error& error)
+  {
+    throw std::invalid_argument(options.output + ": " + error.code().message());
+  }
+  catch (const std::runtime_error& error)
+  {
+    std::cerr << "rolling_contact: " << error.what() << '\n';
+    return fcs::tools::NOT_CONVERGED;
+  }
+}
 }  // namespace
 
 int main(int argc, char** argv)
@@ -157,37 +142,5 @@ int main(int argc, char** argv)
   app.add_option("--compare", options.compare,
                  "solvers of the core (registry names, comma between) for the same static contact")
       ->delimiter(',');
-  try
-  {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp& help)
-  {
-    return app.exit(help);
-  }
-  catch (const CLI::ParseError& error)
-  {
-    std::cerr << "rolling_contact: " << error.what() << '\n';
-    return 2;
-  }
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  try
-  {
-    return run(options);
-  }
-  catch (const std::filesystem::filesystem_error& error)
-  {
-    std::cerr << "rolling_contact: " << options.output << ": " << error.code().message() << '\n';
-    return 2;
-  }
-  catch (const std::runtime_error& error)
-  {
-    std::cerr << "rolling_contact: " << error.what() << '\n';
-    return 1;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "rolling_contact: " << error.what() << '\n';
-    return 2;
-  }
+  return fcs::tools::runTool(app, argc, argv, [&] { return runOrReport(options); });
 }

@@ -248,27 +248,10 @@ int main(int argc, char** argv)
   app.add_flag("--dump-local", options.dump_local,
                "dump the local problem (W, q) instead of the global one (M, f, H, w)")
       ->needs(dump);
-  try
-  {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::CallForHelp& help)
-  {
-    return app.exit(help);
-  }
-  catch (const CLI::ParseError& error)
-  {
-    std::cerr << "run_scenario: " << error.what() << '\n';
-    return 2;
-  }
-  std::signal(SIGINT, [](int) { interrupted = 1; });
-  try
-  {
-    return runAll(options);
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "run_scenario: " << error.what() << '\n';
-    return 2;
-  }
+  return fcs::tools::runTool(app, argc, argv,
+                             [&]
+                             {
+                               std::signal(SIGINT, [](int) { interrupted = 1; });
+                               return runAll(options);
+                             });
 }

@@ -11,6 +11,8 @@
 #include <iostream>
 #include <string>
 
+#include "frictional_contact_sim/solver/solver.h"
+
 namespace frictional_contact_sim
 {
 namespace tools
@@ -72,6 +74,17 @@ private:
   bool shown_ = false;
   std::chrono::steady_clock::time_point start_;
 };
+
+/** @brief --tolerance, --max-iterations, --time-limit and --repeat of the tools that solve FCLib files. */
+inline void addSolveOptions(CLI::App& app, StoppingOptions& stopping, int& repeat)
+{
+  app.add_option("--tolerance", stopping.tolerance, "on the residual E [-]")->capture_default_str();
+  app.add_option("--max-iterations", stopping.max_iterations, "iterations of a method")->capture_default_str();
+  app.add_option("--time-limit", stopping.time_limit, "wall clock of a solve [s], 0 = none")->capture_default_str();
+  app.add_option("--repeat", repeat, "cold solves; times are their medians")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+}
 
 /** @brief Parses, runs, and turns every exception into one line and BAD_INPUT. run() returns the exit code. */
 template <typename Run>
