@@ -1,6 +1,6 @@
 #include "frictional_contact_sim/solver/cadoux_newton.h"
 
-#include <Eigen/QR>
+#include <utility>
 
 #include "frictional_contact_sim/math/cone.h"
 #include "frictional_contact_sim/problem/law_functions.h"
@@ -38,53 +38,108 @@ void CadouxNewtonOptions::validate() const
   requireOption(line_search_steps >= 0, "cadoux_newton.line_search_steps", line_search_steps, ">= 0");
   requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "cadoux_newton.sufficient_decrease",
                 sufficient_decrease, "in (0, 0.5)");
-  requireOption(rank_threshold > 0.0 && rank_threshold < 1.0, "cadoux_newton.rank_threshold", rank_threshold,
-                "in (0, 1)");
+  requireOption(proximal > 0.0 && proximal < 1.0, "cadoux_newton.proximal", proximal, "in (0, 1)");
   requireOption(max_rows >= 1, "cadoux_newton.max_rows", max_rows, ">= 1");
   requireOption(stall_window >= 2, "cadoux_newton.stall_window", stall_window, ">= 2");
 }
 
-Eigen::VectorXd cadouxNewtonStep(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s,
-                                 double rank_threshold)
+/** P' of every law, and the rows where it is not zero. */
+void CadouxNewtonStep::activate(const DelassusProblem& problem, const SlipMap& map)
 {
-  const Eigen::MatrixXd W = problem.W.toDense();
-  const Eigen::VectorXd gap = map.value() - s;  // F - s
-  // Rows of S W, then W + E S W and E (F - s).
-  Eigen::MatrixXd slope(map.size(), W.cols());
-  Eigen::MatrixXd shifted = W;
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(W.rows());
-  for (int k = 0; k < map.size(); ++k)
-  {
-    const int i = map.contact(k);
-    const int row = problem.W.offset(i);
-    const int tangents = problem.W.dimension(i) - 1;
-    const double mu = problem.laws[static_cast<std::size_t>(i)].coefficient;
-    slope.row(k).setZero();
-    if (map.value()[k] > 0.0)
-      slope.row(k) = map.u().segment(row + 1, tangents).transpose() / map.value()[k] * W.middleRows(row + 1, tangents);
-    shifted.row(row) += mu * slope.row(k);
-    shift[row] = mu * gap[k];
-  }
-  const Eigen::VectorXd& rho = map.convexProblem().step_lengths;
-  Eigen::MatrixXd system(W.rows(), W.cols());
-  Eigen::VectorXd right(W.rows());
-  Eigen::VectorXd x = map.r();
-  for (int i = 0; i < problem.W.blocks(); ++i)
+  const int blocks = problem.W.blocks();
+  jacobian_.resize(static_cast<std::size_t>(blocks));
+  position_.resize(static_cast<std::size_t>(problem.W.rows()));
+  x_ = map.r();
+  int active = 0;
+  for (int i = 0; i < blocks; ++i)
   {
     const int row = problem.W.offset(i);
     const int d = problem.W.dimension(i);
-    x.segment(row, d) -= rho[i] * map.shiftedVelocity().segment(row, d);
-    const SquareMatrix<3> jacobian = projectionJacobian(problem.laws[static_cast<std::size_t>(i)], x, row);
-    const auto P = jacobian.topLeftCorner(d, d);
-    system.middleRows(row, d) = rho[i] * P * shifted.middleRows(row, d);
-    system.block(row, row, d, d) += Eigen::MatrixXd::Identity(d, d) - P;
-    right.segment(row, d) = -rho[i] * P * shift.segment(row, d);
+    x_.segment(row, d) -= map.convexProblem().step_lengths[i] * map.shiftedVelocity().segment(row, d);
+    SquareMatrix<3>& P = jacobian_[static_cast<std::size_t>(i)];
+    P = projectionJacobian(problem.laws[static_cast<std::size_t>(i)], x_, row);
+    const bool fixed = P.isZero(0.0);
+    for (int k = row; k < row + d; ++k)
+      position_[static_cast<std::size_t>(k)] = fixed ? -1 : active++;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor;
-  factor.setThreshold(rank_threshold);
-  factor.compute(system);
-  const Eigen::VectorXd dr = factor.solve(right);
-  return gap + slope * dr;
+  right_.resize(active);
+}
+
+/** The rows of law i in (4.28): I - P' + rho P' (G W_i + alpha/rho), G = I + mu e u_T^T/F. */
+template <int D>
+void CadouxNewtonStep::fillRows(const DelassusProblem& problem, const SlipMap& map, int i,
+                                Eigen::Map<Eigen::MatrixXd>& system)
+{
+  const int row = problem.W.offset(i);
+  const int first = position_[static_cast<std::size_t>(row)];
+  const SquareMatrix<D> P = jacobian_[static_cast<std::size_t>(i)].topLeftCorner<D, D>();
+  const double mu = D > 1 ? problem.laws[static_cast<std::size_t>(i)].coefficient : 0.0;
+  SquareMatrix<D> G = SquareMatrix<D>::Identity();
+  for (int k = 1; k < D && speed_[i] > 0.0; ++k)
+    G(0, k) = mu * map.u()[row + k] / speed_[i];
+  const double rho = map.convexProblem().step_lengths[i];
+  const SquareMatrix<D> A = rho * P * G;
+  problem.W.visitRow(i,
+                     [&](int column, const double* w, int stride)
+                     {
+                       const int target = position_[static_cast<std::size_t>(column)];
+                       if (target < 0)
+                         return;
+                       Vector<D> w_column;
+                       for (int k = 0; k < D; ++k)
+                         w_column[k] = w[k * stride];
+                       system.col(target).template segment<D>(first) = A * w_column;
+                     });
+  system.block<D, D>(first, first) += SquareMatrix<D>::Identity() - (1.0 - alpha_) * P;
+  right_.segment<D>(first) = -rho * mu * gap_[i] * P.col(0);
+}
+
+bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s,
+                               double alpha, Eigen::VectorXd& ds)
+{
+  alpha_ = alpha;
+  activate(problem, map);
+  gap_.setZero(problem.W.blocks());
+  speed_.setZero(problem.W.blocks());
+  for (int k = 0; k < map.size(); ++k)
+  {
+    gap_[map.contact(k)] = map.value()[k] - s[k];
+    speed_[map.contact(k)] = map.value()[k];
+  }
+  const int active = static_cast<int>(right_.size());
+  lu_.reserve(active);
+  Eigen::Map<Eigen::MatrixXd> system = lu_.start(active);
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    if (position_[static_cast<std::size_t>(problem.W.offset(i))] < 0)
+      continue;
+    if (problem.W.dimension(i) == 3)
+      fillRows<3>(problem, map, i, system);
+    else if (problem.W.dimension(i) == 2)
+      fillRows<2>(problem, map, i, system);
+    else
+      fillRows<1>(problem, map, i, system);
+  }
+  if (!lu_.factor())
+    return false;
+  lu_.solve(right_);
+  dr_.setZero(problem.W.rows());
+  for (int row = 0; row < problem.W.rows(); ++row)
+    if (position_[static_cast<std::size_t>(row)] >= 0)
+      dr_[row] = right_[position_[static_cast<std::size_t>(row)]];
+  // ds = F - s + S W dr
+  problem.W.apply(dr_, du_);
+  ds.resize(map.size());
+  for (int k = 0; k < map.size(); ++k)
+  {
+    const int i = map.contact(k);
+    const int row = problem.W.offset(i) + 1;
+    const int tangents = problem.W.dimension(i) - 1;
+    ds[k] = gap_[i];
+    if (speed_[i] > 0.0)
+      ds[k] += map.u().segment(row, tangents).dot(du_.segment(row, tangents)) / speed_[i];
+  }
+  return ds.allFinite();
 }
 
 CadouxNewton::CadouxNewton(const CadouxNewtonOptions& options, std::unique_ptr<ConvexSolver> inner)
@@ -101,13 +156,13 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
   if (problem.W.rows() > options_.max_rows)
   {
     loop.stop(SolverStatus::NUMERICAL_FAILURE, "");
-    result.message = "the least-squares system has " + std::to_string(problem.W.rows()) + " rows, the limit is " +
+    result.message = "the Newton system has up to " + std::to_string(problem.W.rows()) + " rows, the limit is " +
                      std::to_string(options_.max_rows);
     return;
   }
   map_.setProblem(problem, stepLengths());
   map_.setGuess(result.solution.r);
-  Eigen::VectorXd s = map_.value();
+  s_ = map_.value();
   if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
@@ -117,30 +172,30 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
     map_.evaluate(point, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     return 0.5 * (map_.value() - point).squaredNorm();
   };
-  double merit = evaluate(s);
+  double merit = evaluate(s_);
   while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Newton iterations exhausted"))
   {
     ++result.iterations;
     if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
       return;
-    const Eigen::VectorXd step = cadouxNewtonStep(problem, map_, s, options_.rank_threshold);
-    const Eigen::VectorXd fixed_point = map_.value();
-    double length = 1.0;
+    const bool regular = newton_.compute(problem, map_, s_, options_.proximal, step_);
+    fixed_point_ = map_.value();
     double trial_merit = merit;
     bool accepted = false;
-    for (int k = 0; k <= options_.line_search_steps && !accepted && step.allFinite(); ++k, length *= 0.5)
+    double length = 1.0;
+    for (int k = 0; k <= options_.line_search_steps && !accepted && regular; ++k, length *= 0.5)
     {
-      const Eigen::VectorXd trial = (s + length * step).cwiseMax(0.0);
-      trial_merit = evaluate(trial);
+      trial_ = (s_ + length * step_).cwiseMax(0.0);
+      trial_merit = evaluate(trial_);
       // Newton's slope of the merit is -2 merit.
       accepted = trial_merit <= (1.0 - 2.0 * options_.sufficient_decrease * length) * merit;
-      if (accepted)
-        s = trial;
     }
-    if (!accepted)
+    if (accepted)
+      s_.swap(trial_);
+    else
     {
-      s = fixed_point;
-      trial_merit = evaluate(s);
+      s_.swap(fixed_point_);
+      trial_merit = evaluate(s_);
     }
     merit = trial_merit;
   }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/problem/residual.h"
 #include "frictional_contact_sim/solver/admm.h"
 #include "frictional_contact_sim/solver/cadoux_broyden.h"
@@ -70,17 +71,74 @@ TEST(CadouxNewtonTest, OneStepFromTheAffineMapIsExact)
   ConvexBudget budget;
   budget.tolerance = 1e-14;
   map.evaluate(s, budget);
-  const Eigen::VectorXd step = cadouxNewtonStep(problem, map, s, 1e-10);
+  // The proximal term is the only other thing in the step: relative to W it is 1e-13.
+  Eigen::VectorXd step;
+  ASSERT_TRUE(CadouxNewtonStep().compute(problem, map, s, 1e-13, step));
   ASSERT_EQ(step.size(), 1);
-  EXPECT_NEAR(step[0], -0.5, 1e-14);
+  EXPECT_NEAR(step[0], -0.5, 1e-12);
 }
 
 TEST(CadouxNewtonTest, IteratesAreNewtonsOnTheFixedPoint)
 {
   // s_0 = 2: r_1 = r(2); Newton on the affine F - s gives s_1 = 3/2, the solution.
-  CadouxNewton solver({}, exactInner());
+  // The proximal term shortens the step by its own share.
+  CadouxNewtonOptions options;
+  options.proximal = 1e-13;
+  CadouxNewton solver(options, exactInner());
   EXPECT_LT((impulseAfter(solver, 1) - Eigen::Vector3d(0.8, 0.4, 0)).norm(), 1e-14);
-  EXPECT_LT((impulseAfter(solver, 2) - Eigen::Vector3d(1, 0.5, 0)).norm(), 1e-14);
+  EXPECT_LT((impulseAfter(solver, 2) - Eigen::Vector3d(1, 0.5, 0)).norm(), 1e-12);
+}
+
+TEST(CadouxNewtonTest, StepIsNewtonsOnTheSlipMap)
+{
+  // Three coupled contacts: one sticks, one slides, one parts. The step must solve (F' - I) ds = s - F with the
+  // Jacobian of F from central differences.
+  Eigen::Matrix<double, 9, 9> H;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      H(i, j) = std::sin(1.0 + 3.0 * i + 7.0 * j);
+  DelassusProblem problem;
+  problem.laws.assign(3, Law{LawType::COULOMB_3D, 0.5});
+  problem.W.assign(Eigen::MatrixXd(Eigen::MatrixXd::Identity(9, 9) + 0.05 * H * H.transpose()), problem.laws);
+  problem.q.resize(9);
+  problem.q << -2.0, 0.1, 0.1, -1.0, 2.0, -1.5, 3.0, 0.3, -0.2;
+  Eigen::VectorXd steps;
+  computeStepLengths(problem, steps);
+  SlipMap map(std::make_unique<ConvexInteriorPoint>());
+  map.setProblem(problem, steps);
+  map.setGuess(Eigen::VectorXd::Zero(9));
+  ConvexBudget budget;
+  budget.tolerance = 1e-13;
+  const Eigen::Vector3d s(0.05, 2.0, 0.4);
+  constexpr double WIDTH = 1e-4;
+  Eigen::Matrix3d slope;
+  for (int k = 0; k < 3; ++k)
+  {
+    map.evaluate(s + WIDTH * Eigen::Vector3d::Unit(k), budget);
+    slope.col(k) = map.value();
+    map.evaluate(s - WIDTH * Eigen::Vector3d::Unit(k), budget);
+    slope.col(k) = (slope.col(k) - map.value()) / (2.0 * WIDTH);
+  }
+  map.evaluate(s, budget);
+  ASSERT_LT(map.r().segment<2>(1).norm(), 0.5 * map.r()[0]);  // sticks
+  ASSERT_GT(map.value()[1], 0.1);  // slides
+  ASSERT_LT(map.r()[6], 1e-12);  // parts
+  const Eigen::Vector3d expected = (Eigen::Matrix3d::Identity() - slope).lu().solve(map.value() - s);
+  Eigen::VectorXd step;
+  ASSERT_TRUE(CadouxNewtonStep().compute(problem, map, s, 1e-13, step));
+  // Central differences: WIDTH^2 beside the inner tolerance over WIDTH.
+  EXPECT_LT((step - expected).norm(), 1e-6 * expected.norm());
+}
+
+TEST(CadouxNewtonTest, SolvesTheLargestRandomDraw)
+{
+  // 500 contacts, 1500 rows of rank 1260: the least-squares step of the thesis is singular here, and dense.
+  DelassusReduction reduction;
+  reduction.compute(randomFamilyProblem(largeRandomFamily().back().options));
+  CadouxNewton solver;
+  solver.setStopping(stopAfter(50, 1e-8));
+  const SolverResult result = solver.solve(reduction.problem());
+  EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.message << ' ' << result.residual;
 }
 
 TEST(CadouxBroydenTest, SecondUpdateIsTheSecant)
