@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "option_range.h"
 #include "random_draw.h"
 
 namespace frictional_contact_sim
@@ -11,11 +12,11 @@ namespace
 {
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-void require(bool condition, const std::string& text)
-{
-  if (!condition)
-    throw std::invalid_argument("random family: " + text);
-}
+constexpr int MAX_COUNT = 10000000;
+constexpr int MAX_SUBSYSTEM = 3000;  ///< a dense block
+constexpr double MAX_CONDITION = 1e15;  ///< beyond it a matrix of doubles need not be definite
+constexpr double MAX_SPEED = 1e9;  ///< [m/s]
+constexpr double MAX_FRICTION = 1e6;
 
 /** Columns orthonormal: Gram-Schmidt, twice for orthogonality to round-off. */
 Eigen::MatrixXd randomOrthogonal(int size, RandomDraw& draw)
@@ -102,19 +103,18 @@ RandomFamilyOptions line(int velocities, int contacts, int subsystem_velocities,
 
 void RandomFamilyOptions::validate() const
 {
-  require(subsystem_velocities >= 1,
-          "subsystem_velocities is " + std::to_string(subsystem_velocities) + ", expected at least 1");
-  require(velocities % subsystem_velocities == 0 && velocities / subsystem_velocities >= 2,
-          "velocities is " + std::to_string(velocities) + ", expected a multiple of subsystem_velocities (" +
-              std::to_string(subsystem_velocities) + "), twice it or more");
-  require(contacts >= 0, "contacts is " + std::to_string(contacts) + ", expected >= 0");
-  require(std::isfinite(condition) && condition >= 1.0,
-          "condition is " + std::to_string(condition) + ", expected >= 1");
-  require(std::isfinite(external_velocity) && external_velocity >= 0.0,
-          "external_velocity is " + std::to_string(external_velocity) + ", expected >= 0");
-  require(friction_min >= 0.0 && friction_max >= friction_min && std::isfinite(friction_max),
-          "friction is " + std::to_string(friction_min) + " to " + std::to_string(friction_max) +
-              ", expected 0 <= friction_min <= friction_max");
+  constexpr const char* FAMILY = "random family";
+  requireRange(FAMILY, "subsystem_velocities", subsystem_velocities, 1, MAX_SUBSYSTEM);
+  requireRange(FAMILY, "velocities", velocities, 2 * subsystem_velocities, MAX_COUNT);
+  if (velocities % subsystem_velocities != 0)
+    throw std::invalid_argument("random family: velocities is " + std::to_string(velocities) +
+                                ", expected a multiple of subsystem_velocities (" +
+                                std::to_string(subsystem_velocities) + ")");
+  requireRange(FAMILY, "contacts", contacts, 0, MAX_COUNT);
+  requireRange(FAMILY, "condition", condition, 1.0, MAX_CONDITION);
+  requireRange(FAMILY, "external_velocity", external_velocity, 0.0, MAX_SPEED);
+  requireRange(FAMILY, "friction_min", friction_min, 0.0, MAX_FRICTION);
+  requireRange(FAMILY, "friction_max", friction_max, friction_min, MAX_FRICTION);
 }
 
 IncrementalProblem randomFamilyProblem(const RandomFamilyOptions& options)

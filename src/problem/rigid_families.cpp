@@ -1,10 +1,10 @@
 #include "frictional_contact_sim/problem/rigid_families.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "option_range.h"
 #include "random_draw.h"
 
 namespace frictional_contact_sim
@@ -14,11 +14,13 @@ namespace
 constexpr double GRAVITY = 9.81;  ///< [m/s^2]
 constexpr int FIXED = -1;  ///< the floor as a body
 
-void require(bool condition, const std::string& text)
-{
-  if (!condition)
-    throw std::invalid_argument("rigid family: " + text);
-}
+constexpr const char* FAMILY = "rigid family";
+constexpr int MAX_COUNT = 10000000;
+constexpr int MAX_WIDTH = 1000;
+constexpr double MAX_MASS_RATIO = 1e15;  ///< beyond it a matrix of doubles need not be definite
+constexpr double MAX_SPEED = 1e9;  ///< [m/s, rad/s]; of a time step [s]
+constexpr double MAX_FRICTION = 1e6;
+constexpr double MAX_TILT = 7.0;  ///< [rad], more than a turn
 
 struct Ball
 {
@@ -109,22 +111,19 @@ private:
 
 void RigidFamilyOptions::validate() const
 {
-  require(friction_min >= 0.0 && friction_max >= friction_min && std::isfinite(friction_max),
-          "friction is " + std::to_string(friction_min) + " to " + std::to_string(friction_max) +
-              ", expected 0 <= friction_min <= friction_max");
-  require(std::isfinite(mass_ratio) && mass_ratio >= 1.0,
-          "mass_ratio is " + std::to_string(mass_ratio) + ", expected >= 1");
-  require(std::isfinite(agitation) && agitation >= 0.0,
-          "agitation is " + std::to_string(agitation) + ", expected >= 0");
-  require(std::isfinite(time_step) && time_step > 0.0, "time_step is " + std::to_string(time_step) + ", expected > 0");
-  require(std::isfinite(tilt), "tilt is not finite");
+  requireRange(FAMILY, "friction_min", friction_min, 0.0, MAX_FRICTION);
+  requireRange(FAMILY, "friction_max", friction_max, friction_min, MAX_FRICTION);
+  requireRange(FAMILY, "mass_ratio", mass_ratio, 1.0, MAX_MASS_RATIO);
+  requireRange(FAMILY, "agitation", agitation, 0.0, MAX_SPEED);
+  requireRange(FAMILY, "time_step", time_step, 1e-12, MAX_SPEED);
+  requireRange(FAMILY, "tilt", tilt, -MAX_TILT, MAX_TILT);
 }
 
 IncrementalProblem granularProblem(int contacts, int width, const RigidFamilyOptions& options)
 {
   options.validate();
-  require(contacts >= 1, "contacts is " + std::to_string(contacts) + ", expected at least 1");
-  require(width >= 0, "width is " + std::to_string(width) + ", expected >= 0");
+  requireRange(FAMILY, "contacts", contacts, 1, MAX_COUNT);
+  requireRange(FAMILY, "width", width, 0, MAX_WIDTH);
   if (width == 0)
     width = static_cast<int>(std::ceil(std::cbrt(contacts / 3.0)));
   RandomDraw draw(options.seed);
@@ -162,8 +161,8 @@ IncrementalProblem granularProblem(int contacts, int width, const RigidFamilyOpt
 IncrementalProblem boxStackProblem(int levels, int points_per_side, const RigidFamilyOptions& options)
 {
   options.validate();
-  require(levels >= 1, "levels is " + std::to_string(levels) + ", expected at least 1");
-  require(points_per_side >= 2, "points_per_side is " + std::to_string(points_per_side) + ", expected at least 2");
+  requireRange(FAMILY, "points_per_side", points_per_side, 2, MAX_WIDTH);
+  requireRange(FAMILY, "levels", levels, 1, MAX_COUNT / (points_per_side * points_per_side));
   RandomDraw draw(options.seed);
   Builder builder(options, draw);
   for (int level = 0; level < levels; ++level)

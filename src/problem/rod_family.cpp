@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "option_range.h"
 #include "random_draw.h"
 
 namespace frictional_contact_sim
@@ -20,15 +21,11 @@ constexpr double POISSON = 0.5;  ///< incompressible, as hair is taken to be
 constexpr double TIME_STEP = 1e-3;  ///< [s]
 constexpr double JERK = 0.5;  ///< deviation of the change of the support's velocity in the step [m/s, rad/s]
 constexpr int SECTIONS = 16;  ///< a piece
+constexpr int MAX_COUNT = 100000;
+constexpr int MAX_PIECES = 1000;
 constexpr double PI = 3.14159265358979323846;
 constexpr double AREA = PI * RADIUS * RADIUS;
 constexpr double INERTIA = PI * RADIUS * RADIUS * RADIUS * RADIUS / 4.0;  ///< of a section about a diameter [m^4]
-
-void require(bool condition, const std::string& text)
-{
-  if (!condition)
-    throw std::invalid_argument("rod family: " + text);
-}
 
 Eigen::Matrix3d cross(const Eigen::Vector3d& x)
 {
@@ -189,8 +186,9 @@ std::vector<ClosePair> closestPairs(const std::vector<Rod>& rods, int count)
     taken.insert({pair.rod_a, pair.rod_b, pair.section_a});
     chosen.push_back(pair);
   }
-  require(static_cast<int>(chosen.size()) == count, "contacts is " + std::to_string(count) + ", expected at most " +
-                                                        std::to_string(chosen.size()) + " for these rods");
+  if (static_cast<int>(chosen.size()) < count)
+    throw std::invalid_argument("rod family: contacts is " + std::to_string(count) + ", expected at most " +
+                                std::to_string(chosen.size()) + " for these rods");
   return chosen;
 }
 
@@ -237,14 +235,14 @@ std::vector<RodFamilyEntry> table(const std::vector<std::pair<int, int>>& sizes)
 
 void RodFamilyOptions::validate() const
 {
-  require(rods >= 2, "rods is " + std::to_string(rods) + ", expected at least 2");
-  require(pieces >= 1, "pieces is " + std::to_string(pieces) + ", expected at least 1");
-  require(contacts >= 0, "contacts is " + std::to_string(contacts) + ", expected >= 0");
-  require(std::isfinite(friction) && friction >= 0.0, "friction is " + std::to_string(friction) + ", expected >= 0");
-  require(std::isfinite(curl) && curl >= 0.0, "curl is " + std::to_string(curl) + ", expected >= 0");
-  require(std::isfinite(spacing) && spacing > 0.0, "spacing is " + std::to_string(spacing) + ", expected > 0");
-  require(std::isfinite(agitation) && agitation >= 0.0,
-          "agitation is " + std::to_string(agitation) + ", expected >= 0");
+  constexpr const char* FAMILY = "rod family";
+  requireRange(FAMILY, "rods", rods, 2, MAX_COUNT);
+  requireRange(FAMILY, "pieces", pieces, 1, MAX_PIECES);
+  requireRange(FAMILY, "contacts", contacts, 0, MAX_COUNT);
+  requireRange(FAMILY, "friction", friction, 0.0, 1e6);
+  requireRange(FAMILY, "curl", curl, 0.0, 1e6);
+  requireRange(FAMILY, "spacing", spacing, 1e-9, 1e6);
+  requireRange(FAMILY, "agitation", agitation, 0.0, 1e9);
 }
 
 IncrementalProblem rodFamilyProblem(const RodFamilyOptions& options)

@@ -43,7 +43,10 @@ ContactFlexibility makeFlexibility(const RollingCase& study, const MaterialPair&
     CylinderMesh mesh = study.mesh;
     mesh.radius = study.radius;
     mesh.contact_elements = study.nodes;
-    mesh.half_angle = std::asin(std::min(1.0, half_width / study.radius));
+    if (!(half_width <= study.radius))
+      throw std::invalid_argument("half_width: found a contact zone of " + std::to_string(half_width) +
+                                  " m, expected at most the radius of " + std::to_string(study.radius) + " m");
+    mesh.half_angle = std::asin(half_width / study.radius);
     contour = makeCylinderContour(mesh);
   }
   ContactFlexibility F = condense(contour, materials.upper, study.frames);

@@ -185,6 +185,24 @@ void readContour(const Entry& entry, RollingCase& study)
   study.contour = contour;
 }
 
+/// Keys that another one leaves without a meaning are mistakes, not to be passed over.
+void checkDiscretisation(const Entry& root, const RollingCase& study)
+{
+  const bool half_plane = study.source == FlexibilitySource::HALF_PLANE;
+  for (const char* key : {"contour", "mesh"})
+    if (half_plane && root.has(key))
+      root.at(key).failWith("found beside flexibility: half_plane, expected boundary_elements");
+  for (const char* key : {"nodes", "half_width", "mesh"})
+    if (study.contour && root.has(key))
+      root.at(key).failWith("found beside contour, whose points are the mesh, expected one of them");
+  if (!half_plane && study.half_width > study.radius)
+  {
+    std::ostringstream expected;
+    expected << "a number up to the radius of " << study.radius << " m";
+    root.at("half_width").fail(expected.str());
+  }
+}
+
 void readDiscretisation(const Entry& root, RollingCase& study)
 {
   constexpr int MAX_NODES = 2000;
@@ -215,6 +233,7 @@ void readDiscretisation(const Entry& root, RollingCase& study)
   }
   if (root.has("contour"))
     readContour(root.at("contour"), study);
+  checkDiscretisation(root, study);
 }
 
 void readDriving(const Entry& root, RollingCase& study)

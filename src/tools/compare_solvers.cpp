@@ -225,6 +225,8 @@ int run(Arguments& arguments)
       arguments.solvers.emplace_back(entry.name);
   const std::vector<std::string> files = listFiles(arguments.inputs);
   std::ofstream file;
+  // Looks at all names and options before a file is touched.
+  Comparison comparison(arguments, arguments.output.empty() ? std::cout : file);
   if (!arguments.output.empty())
   {
     for (const std::string& input : files)
@@ -235,7 +237,7 @@ int run(Arguments& arguments)
       throw std::runtime_error("cannot write " + arguments.output);
   }
   std::signal(SIGINT, [](int) { interrupted = 1; });
-  return Comparison(arguments, arguments.output.empty() ? std::cout : file).run(files);
+  return comparison.run(files);
 }
 }  // namespace
 

@@ -1,4 +1,6 @@
 // rolling_contact FILE.yaml: solves a rolling contact case, prints a summary, writes CSV files and creep curves.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <filesystem>
@@ -7,6 +9,7 @@
 #include "frictional_contact_sim/rolling/closed_forms.h"
 #include "frictional_contact_sim/rolling/core_comparison.h"
 #include "frictional_contact_sim/rolling/rolling_case.h"
+#include "frictional_contact_sim/solver/registry.h"
 #include "tool_support.h"
 
 namespace fcs = frictional_contact_sim;
@@ -69,13 +72,27 @@ void compare(const fcs::RollingRun& run, const std::vector<std::string>& solvers
   }
 }
 
+/** Makes the folder, before the computation: @throws std::invalid_argument when no file can be made in it. */
+void checkWritable(const std::string& folder)
+{
+  std::filesystem::create_directories(folder);
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw std::invalid_argument(folder + ": cannot be written, expected a folder for the results");
+}
+
 int run(const Options& options)
 {
   fcs::RollingCase study = fcs::loadRollingCase(options.file);
   if (!options.compare.empty() && study.motion != fcs::Motion::STATIC)
     throw std::invalid_argument(options.file + ": key 'rolling.motion': --compare expects static");
+  if (options.nodes > 0 && study.contour)
+    throw std::invalid_argument("--nodes: " + options.file + " has a contour, whose points are the mesh");
   if (options.nodes > 0)
     study.nodes = options.nodes;
+  for (const std::string& solver : options.compare)
+    fcs::createSolver(solver);
+  if (!options.output.empty())
+    checkWritable(options.output);
   std::vector<fcs::RollingRun> runs;
   {
     fcs::tools::ProgressBar progress(100);
@@ -98,11 +115,8 @@ int run(const Options& options)
     converged = converged && one.converged;
   }
   if (!options.output.empty())
-  {
-    std::filesystem::create_directories(options.output);
     for (const std::string& path : fcs::writeRollingFiles(study, runs, options.output))
       std::cout << "wrote " << path << '\n';
-  }
   if (interrupted != 0)
     std::cerr << "rolling_contact: interrupted after " << runs.size() << " runs\n";
   return converged ? 0 : 1;

@@ -91,6 +91,27 @@ TEST(RollingCaseTest, EveryMistakeIsOneLineWithFileKeyFoundAndExpected)
   EXPECT_THROW(loadRollingCase("/nowhere/case.yaml"), std::invalid_argument);
 }
 
+TEST(RollingCaseTest, KeysWithoutAMeaningAreNotPassedOver)
+{
+  const std::string load = HEAD + "load: {normal: 1}\n";
+  const std::string contour = "contour: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], contact: [0, 0], held: [2, 2]}\n";
+  EXPECT_THAT(complaint(load + contour + "nodes: 20\n"), HasSubstr("key 'nodes': found beside contour"));
+  EXPECT_THAT(complaint(load + contour + "half_width: 0.1\n"), HasSubstr("key 'half_width': found beside contour"));
+  EXPECT_THAT(complaint(load + contour + "mesh: {growth: 2}\n"), HasSubstr("key 'mesh': found beside contour"));
+  EXPECT_THAT(complaint(load + contour + "flexibility: half_plane\n"), HasSubstr("key 'contour': found beside"));
+  EXPECT_THAT(complaint(load + "mesh: {growth: 2}\nflexibility: half_plane\n"), HasSubstr("key 'mesh': found beside"));
+}
+
+TEST(RollingCaseTest, TheZoneIsNotWiderThanTheCylinder)
+{
+  EXPECT_EQ(complaint(HEAD + "load: {normal: 1}\nradius: 0.5\nhalf_width: 0.6\n"),
+            "case.yaml:5: key 'half_width': found '0.6', expected a number up to the radius of 0.5 m");
+  EXPECT_EQ(complaint(HEAD + "load: {normal: 1}\nradius: 0.5\nhalf_width: 0.6\nflexibility: half_plane\n"), "accepted");
+  // Not given: sqrt(2 R d_N) = 1.22 R.
+  const RollingCase study = parseRollingCase(HEAD + "displacement: {normal: 0.75}\nnodes: 5\n", "case.yaml");
+  EXPECT_THROW(runRollingCase(study), std::invalid_argument);
+}
+
 TEST(RollingCaseTest, BadContoursAreNamed)
 {
   const auto contour = [](const std::string& points, const std::string& contact)

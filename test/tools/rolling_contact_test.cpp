@@ -113,4 +113,9 @@ TEST_F(RollingContactTest, BadInputIsOneLineAndExitCodeTwo)
   EXPECT_THAT(complaint(""), HasSubstr("FILE is required"));
   EXPECT_THAT(complaint(example("cattaneo") + " --nodes 0"), HasSubstr("--nodes"));
   EXPECT_THAT(complaint(example("carter") + " --nodes 20 --compare lcp_lemke"), HasSubstr("--compare expects static"));
+  const std::string contour = "contour: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], contact: [0, 0], held: [2, 2]}\n";
+  EXPECT_THAT(complaint(write("upper: {young_modulus: 1" + rest + contour) + " --nodes 9"), HasSubstr("--nodes: "));
+  EXPECT_THAT(complaint(example("cattaneo") + " --nodes 20 --compare lemke"), HasSubstr("lemke"));
+  // Before the computation: nothing is printed.
+  EXPECT_THAT(complaint(example("cattaneo") + " --nodes 20 --output " + write("") + "/out"), HasSubstr("/out: "));
 }
