@@ -88,6 +88,12 @@ double Admm::spectralPenalty(int iteration) const
   return std::clamp(penalty, 1e-8, 1e8);
 }
 
+bool Admm::refactor()
+{
+  shift_ = penalty_ * inverse_metric_;
+  return factor_.factor(shift_);
+}
+
 void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   makeConeProblem(problem, stepLengths(), convex_);
@@ -110,7 +116,7 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
   r_ = y_;
   x_ = -metric_.cwiseProduct(lambda_) / penalty_;
   remember();
-  bool factored = factor_.factor(penalty_ * inverse_metric_);
+  bool factored = refactor();
   for (int k = 1; k <= stopping().max_iterations; ++k)
   {
     if (!factored || !y_.allFinite())
@@ -144,7 +150,7 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
       continue;
     x_ *= penalty_ / penalty;
     penalty_ = penalty;
-    factored = factor_.factor(penalty_ * inverse_metric_);
+    factored = refactor();
   }
   loop.stop(SolverStatus::MAX_ITERATIONS, "iterations exhausted");
 }

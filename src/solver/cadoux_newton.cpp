@@ -62,7 +62,8 @@ void CadouxNewtonStep::activate(const DelassusProblem& problem, const SlipMap& m
     for (int k = row; k < row + d; ++k)
       position_[static_cast<std::size_t>(k)] = fixed ? -1 : active++;
   }
-  right_.resize(active);
+  active_ = active;
+  right_.resize(problem.W.rows());
 }
 
 /** The rows of law i in (4.28): I - P' + rho P' (G W_i + alpha/rho), G = I + mu e u_T^T/F. */
@@ -106,9 +107,8 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
     gap_[map.contact(k)] = map.value()[k] - s[k];
     speed_[map.contact(k)] = map.value()[k];
   }
-  const int active = static_cast<int>(right_.size());
-  lu_.reserve(active);
-  Eigen::Map<Eigen::MatrixXd> system = lu_.start(active);
+  lu_.reserve(active_);
+  Eigen::Map<Eigen::MatrixXd> system = lu_.start(active_);
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     if (position_[static_cast<std::size_t>(problem.W.offset(i))] < 0)
@@ -122,7 +122,7 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
   }
   if (!lu_.factor())
     return false;
-  lu_.solve(right_);
+  lu_.solve(right_.head(active_));
   dr_.setZero(problem.W.rows());
   for (int row = 0; row < problem.W.rows(); ++row)
     if (position_[static_cast<std::size_t>(row)] >= 0)

@@ -9,6 +9,9 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// From this share of its entries on J' J is factored dense.
+constexpr double DENSE_NORMAL = 0.3;
+
 template <int D>
 double store(const ContactFunction<D>& f, bool jacobians, double* value, double* by_c, double* by_z)
 {
@@ -146,43 +149,54 @@ bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
   return d.allFinite();
 }
 
-bool FbSteps::leastSquares(const FbSystem& system, double lambda, Eigen::VectorXd& d, double& predicted)
+void FbSteps::makeNormal(const FbSystem& system)
 {
   const int rows = system.rows();
+  normal_ready_ = true;
+  dense_normal_ = dense_;
   if (dense_)
   {
-    if (!normal_ready_)
-    {
-      normal_.setZero(rows, rows);
-      normal_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
-      gradient_.noalias() = jacobian_.transpose() * system.value();
-    }
+    normal_.setZero(rows, rows);
+    normal_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
+    gradient_.noalias() = jacobian_.transpose() * system.value();
+    return;
+  }
+  sparse_->normal = Sparse::Matrix(sparse_->jacobian.transpose()) * sparse_->jacobian;
+  gradient_ = sparse_->jacobian.transpose() * system.value();
+  // J' J has the pattern of W^2, its factor more.
+  dense_normal_ = static_cast<double>(sparse_->normal.nonZeros()) > DENSE_NORMAL * rows * rows;
+  if (dense_normal_)
+    normal_ = sparse_->normal;
+}
+
+bool FbSteps::leastSquares(const FbSystem& system, double lambda, Eigen::VectorXd& d, double& predicted)
+{
+  if (!normal_ready_)
+    makeNormal(system);
+  if (dense_normal_)
+  {
     shifted_ = normal_;
     shifted_.diagonal().array() += lambda;
     llt_.compute(shifted_);
-    normal_ready_ = true;
     if (llt_.info() != Eigen::Success)
       return false;
     d = llt_.solve(gradient_);
-    d = -d;
-    product_.noalias() = jacobian_ * d;
   }
   else
   {
-    if (!normal_ready_)
-    {
-      sparse_->identity.resize(rows, rows);
-      sparse_->identity.setIdentity();
-      sparse_->normal = Sparse::Matrix(sparse_->jacobian.transpose()) * sparse_->jacobian;
-      gradient_ = sparse_->jacobian.transpose() * system.value();
-    }
-    normal_ready_ = true;
+    const int rows = system.rows();
+    sparse_->identity.resize(rows, rows);
+    sparse_->identity.setIdentity();
     sparse_->llt.compute(sparse_->normal + lambda * sparse_->identity);
     if (sparse_->llt.info() != Eigen::Success)
       return false;
-    d = -sparse_->llt.solve(gradient_);
-    product_ = sparse_->jacobian * d;
+    d = sparse_->llt.solve(gradient_);
   }
+  d = -d;
+  if (dense_)
+    product_.noalias() = jacobian_ * d;
+  else
+    product_ = sparse_->jacobian * d;
   predicted = -(system.value().dot(product_) + 0.5 * product_.squaredNorm());
   return d.allFinite();
 }

@@ -1,6 +1,7 @@
 #include "frictional_contact_sim/solver/lemke.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -13,8 +14,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Pivots between two questions to `interrupted`.
-constexpr int ASK_EVERY = 32;
+/// Entries of the tableau changed between two questions to `interrupted`: half a millisecond.
+constexpr int ASK_EVERY = 1000000;
 /// What a solution may violate signs by, relative to the largest of |b| and |x|, before it counts as failed.
 constexpr double SIGN_TOLERANCE = 1e-7;
 
@@ -148,7 +149,7 @@ LcpStatus LemkePath::follow(int max_pivots, int& pivots)
     pivot(row, column);
     if (leaving == 2 * n_)
       return LcpStatus::SOLVED;
-    if (pivots % ASK_EVERY == 0 && options_.interrupted && options_.interrupted())
+    if (pivots % std::max(ASK_EVERY / n_ / n_, 1) == 0 && options_.interrupted && options_.interrupted())
       return LcpStatus::INTERRUPTED;
     column = column_of_[static_cast<std::size_t>(leaving < n_ ? leaving + n_ : leaving - n_)];
     row = blockingRow(column);

@@ -169,8 +169,15 @@ void ShiftedFactor::transformDense(const std::vector<SquareMatrix<3>>& bases)
   for (std::size_t i = 0; i < bases.size(); ++i)
   {
     const int d = offsets_[i + 1] - offsets_[i];
-    auto columns = shifted_.middleCols(offsets_[i], d);
-    columns = (columns * bases[i].topLeftCorner(d, d)).eval();
+    for (Eigen::Index row = 0; row < shifted_.rows(); ++row)
+    {
+      Vector<3> x = Vector<3>::Zero();
+      for (int k = 0; k < d; ++k)
+        x[k] = shifted_(row, offsets_[i] + k);
+      x = (bases[i].transpose() * x).eval();
+      for (int k = 0; k < d; ++k)
+        shifted_(row, offsets_[i] + k) = x[k];
+    }
   }
   // Rows of a column-major matrix, column by column.
   for (Eigen::Index j = 0; j < shifted_.cols(); ++j)

@@ -60,7 +60,8 @@ IncrementalProblem chain(int bodies)
 
 constexpr const char* EVERY_STEP[] = {"gauss_seidel", "ac_newton", "portfolio"};
 /// Not asked for, but true where W is dense; the others factor with Eigen or build their inner problem anew.
-constexpr const char* ALSO[] = {"ds_newton", "ds_fixed_point", "ac_fixed_point", "fb_newton", "fb_bfgs", "haslinger"};
+constexpr const char* ALSO[] = {"ds_newton", "ds_fixed_point", "ac_fixed_point", "fb_newton", "fb_bfgs",
+                                "haslinger", "cadoux_newton",  "interior_point", "admm"};
 
 template <typename Problem>
 void expectNoneWhereDense(const Problem& first, const Problem& second)

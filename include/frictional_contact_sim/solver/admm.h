@@ -47,6 +47,7 @@ protected:
 
 private:
   void updateShift(const DelassusProblem& problem);
+  bool refactor();
   double spectralPenalty(int iteration) const;
   void remember();
 
@@ -55,6 +56,7 @@ private:
   ConvexProblem convex_;
   double penalty_ = 1.0;
   Eigen::VectorXd metric_, inverse_metric_;
+  Eigen::VectorXd shift_;  ///< rho D^-1
   Eigen::VectorXd r_, y_, x_, u_;
   Eigen::VectorXd lambda_, lambda_hat_;  ///< multipliers [m/s]: after and before the update of y
   Eigen::VectorXd old_r_, old_y_, old_lambda_, old_lambda_hat_;

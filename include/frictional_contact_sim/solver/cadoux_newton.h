@@ -53,6 +53,7 @@ private:
   void fillRows(const DelassusProblem& problem, const SlipMap& map, int i, Eigen::Map<Eigen::MatrixXd>& system);
 
   double alpha_ = 0.0;
+  int active_ = 0;  ///< rows with P' != 0
   Eigen::VectorXd x_;  ///< r - rho u~
   Eigen::VectorXd gap_;  ///< F - s, one a law, 0 where the law has no s
   Eigen::VectorXd speed_;  ///< F, likewise

@@ -71,7 +71,8 @@ inline void FbSystem::visitJacobian(int i, Visitor visit) const
       visit(first + a, first + b, B[d * a + b]);
 }
 
-/** @brief Linear algebra for steps on Phi = 0: dense when W is stored dense, sparse otherwise (which allocates). */
+/** @brief Linear algebra for steps on Phi = 0: dense when W is stored dense, sparse otherwise (which allocates), J' J
+ * by its own density. */
 class FbSteps
 {
 public:
@@ -91,9 +92,12 @@ public:
   const Eigen::VectorXd& gradient() const { return gradient_; }
 
 private:
+  void makeNormal(const FbSystem& system);
+
   struct Sparse;
   bool dense_ = true;
   bool normal_ready_ = false;
+  bool dense_normal_ = true;
   Eigen::MatrixXd jacobian_, normal_, shifted_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
