@@ -129,7 +129,13 @@ void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
   scaled_.scaleImpulse(result.solution.r, z_);
   scaled_.velocity(z_, c_);
   matrix_ = scaled_.root().asDiagonal() * problem.W.toDense() * scaled_.root().asDiagonal();
-  squared_.noalias() = matrix_.transpose() * matrix_;
+  if (problem.W.isDense())
+    squared_.noalias() = matrix_.transpose() * matrix_;
+  else
+  {
+    const SparseRows sparse = matrix_.sparseView();
+    squared_ = SparseRows(sparse.transpose() * sparse);
+  }
   sigma_ = options_.penalty;
   x_ = z_;
   w_ = c_;

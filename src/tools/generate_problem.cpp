@@ -94,6 +94,15 @@ void writeTable(const std::string& folder, const std::vector<Entry>& table, cons
   }
 }
 
+/// CLI11's own check prints a bound of 309 digits.
+const CLI::Validator WHOLE_NUMBER(
+    [](const std::string& text)
+    {
+      const bool whole = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+      return whole ? std::string() : "is " + text + ", expected a whole number >= 0";
+    },
+    "");
+
 void addRandomOptions(CLI::App& command, RandomFamilyOptions& options)
 {
   command.add_option("--velocities", options.velocities, "m, a multiple of --subsystem")->capture_default_str();
@@ -107,7 +116,7 @@ void addRandomOptions(CLI::App& command, RandomFamilyOptions& options)
       ->capture_default_str();
   command.add_option("--friction-min", options.friction_min, "uniform from here [-]")->capture_default_str();
   command.add_option("--friction-max", options.friction_max, "to here [-]")->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(WHOLE_NUMBER)->capture_default_str();
 }
 
 void addRigidOptions(CLI::App& command, Arguments& arguments)
@@ -119,7 +128,7 @@ void addRigidOptions(CLI::App& command, Arguments& arguments)
       ->capture_default_str();
   command.add_option("--time-step", options.time_step, "[s]")->capture_default_str();
   command.add_option("--tilt", options.tilt, "gravity from the vertical [rad]")->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(WHOLE_NUMBER)->capture_default_str();
 }
 
 void addRodOptions(CLI::App& command, RodFamilyOptions& options)
@@ -132,7 +141,7 @@ void addRodOptions(CLI::App& command, RodFamilyOptions& options)
   command.add_option("--spacing", options.spacing, "between neighbouring roots [m]")->capture_default_str();
   command.add_option("--agitation", options.agitation, "deviation of the velocities before the step [1/(m s)]")
       ->capture_default_str();
-  command.add_option("--seed", options.seed, "of the draw")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command.add_option("--seed", options.seed, "of the draw")->check(WHOLE_NUMBER)->capture_default_str();
 }
 
 RigidFamilyOptions rigidOptions(const Arguments& arguments)

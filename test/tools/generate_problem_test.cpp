@@ -61,6 +61,7 @@ TEST_F(GenerateProblemTest, BadNumbersNameTheOptionWhatWasFoundAndExpected)
   EXPECT_THAT(complaint("rods", "--curl 1e300"), HasSubstr("curl is 1e+300, expected"));
   EXPECT_THAT(complaint("rods", "--pieces 2147483647"), HasSubstr("pieces is 2147483647, expected"));
   EXPECT_THAT(complaint("alea", "--contacts many"), HasSubstr("--contacts"));
+  EXPECT_THAT(complaint("rods", "--seed -1"), HasSubstr("--seed: is -1, expected a whole number >= 0"));
 }
 
 TEST_F(GenerateProblemTest, ComparesWhatWasGenerated)
