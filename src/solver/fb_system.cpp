@@ -10,7 +10,7 @@ namespace frictional_contact_sim
 namespace
 {
 /// From this share of its entries on J' J is factored dense.
-constexpr double DENSE_NORMAL = 0.3;
+constexpr double DENSE_NORMAL = 0.1;
 
 template <int D>
 double store(const ContactFunction<D>& f, bool jacobians, double* value, double* by_c, double* by_z)
