@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Performance profiles (Dolan, More 2002) of a comparison: plot_profiles.py RESULTS.csv [...] --images FOLDER
+"""Performance profiles (Dolan, More 2002) of comparisons: plot_profiles.py --results FOLDER --images FOLDER
 
-rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all.
-Left: our methods, right: Siconos's, our portfolio in both. Targets 1e-4 and 1e-8 of the residual E, judged by the
-independent validator. 3D problems only: a solver is not to be blamed for problems it is not made for.
+rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all. One
+picture a family of problems and target, 1e-4 and 1e-8 of the residual E, judged by the independent validator. Left: our
+methods, where all of them were tried; right: Siconos's; our portfolio in both. 3D problems only: a solver is not to be
+blamed for problems it is not made for.
 """
 import argparse
 import csv
@@ -18,22 +19,33 @@ import matplotlib.pyplot as plt  # noqa: E402
 LARGEST_RATIO = 100.0
 
 
+# Name of the pictures, title, CSV files. Several files are one family; a solver not tried on all of it is left out.
+FAMILIES = [("profile", "FCLib, 3D", ["fclib"]), ("profile_large", "large random problems of the thesis", ["random_large"]),
+            ("profile_scenes", "scenes of the simulator", ["scenes", "scenes_bilaterals"])]
+
+
 def read_times(paths, target):
     """{problem: {solver: seconds}} of what was solved, and the names of ours and theirs."""
-    times, ours, theirs = {}, [], []
+    times, ours, theirs, tried = {}, [], [], {}
     for path in paths:
         with open(path, newline="") as file:
             for row in csv.DictReader(file):
-                if row["target"].startswith("thesis") or float(row["target"]) != target or row["dimension"] != "3":
-                    continue
                 solver = row["solver"]
+                if row["target"].startswith("thesis") or float(row["target"]) != target or row["dimension"] != "3" or \
+                        solver.startswith("thesis"):
+                    continue
                 names = ours if row["ours"] == "1" else theirs
                 if solver not in names:
                     names.append(solver)
+                tried[solver] = tried.get(solver, 0) + 1
                 solved = times.setdefault((path, row["problem"]), {})
                 if row["status"] == "solved":
                     solved[solver] = float(row["seconds"])
-    return times, ours, theirs
+    everywhere = [[name for name in names if tried[name] == len(times)] for names in (ours, theirs)]
+    for solved in times.values():
+        for solver in set(solved) - set(everywhere[0] + everywhere[1]):
+            del solved[solver]
+    return times, *everywhere
 
 
 def profile(times, solver):
@@ -45,10 +57,11 @@ def profile(times, solver):
     return steps + [(max(LARGEST_RATIO, steps[-1][0]), steps[-1][1])]
 
 
-def plot(times, ours, theirs, target, path):
-    figure, panels = plt.subplots(1, 2, figsize=(13, 6.5), sharey=True)
-    for panel, title, names in ((panels[0], "this package", ours),
-                                (panels[1], "Siconos 4.4.0", ["portfolio"] + theirs)):
+def plot(times, ours, theirs, title, path):
+    sides = [("this package", ours)] if len(ours) > 1 else []
+    sides.append(("Siconos 4.4.0", ["portfolio"] + theirs))
+    figure, panels = plt.subplots(1, len(sides), figsize=(6.5 * len(sides), 6.5), sharey=True, squeeze=False)
+    for panel, (side, names) in zip(panels[0], sides):
         colours = plt.get_cmap("tab20").colors
         for number, name in enumerate(names):
             steps = profile(times, name)
@@ -60,11 +73,11 @@ def plot(times, ours, theirs, target, path):
         panel.set_xlim(1.0, LARGEST_RATIO)
         panel.set_ylim(0.0, 1.02)
         panel.set_xlabel("time / time of the quickest solver")
-        panel.set_title(title)
+        panel.set_title(side)
         panel.grid(alpha=0.3, which="both")
         panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=4)
-    panels[0].set_ylabel(f"share of {len(times)} 3D problems solved")
-    figure.suptitle(f"Performance profiles, residual E <= {target:g}, cold starts, CPU time")
+    panels[0][0].set_ylabel(f"share of {len(times)} problems solved")
+    figure.suptitle(title)
     figure.tight_layout()
     figure.savefig(path, dpi=110)
     plt.close(figure)
@@ -72,17 +85,21 @@ def plot(times, ours, theirs, target, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("results", nargs="+", help="CSV files of compare_siconos")
+    parser.add_argument("--results", default="docs/results", help="folder of the CSV files of compare_siconos")
     parser.add_argument("--images", default="docs/images", help="folder of the pictures")
     arguments = parser.parse_args()
     os.makedirs(arguments.images, exist_ok=True)
-    for target in (1e-4, 1e-8):
-        times, ours, theirs = read_times(arguments.results, target)
-        # A problem nobody solved has no quickest solver and says nothing of the order.
-        solvable = {problem: solved for problem, solved in times.items() if solved}
-        if solvable:
-            exponent = round(math.log10(target))
-            plot(solvable, ours, theirs, target, os.path.join(arguments.images, f"profile_1e{exponent}.png"))
+    for name, family, files in FAMILIES:
+        paths = [os.path.join(arguments.results, file + ".csv") for file in files]
+        if not all(os.path.exists(path) for path in paths):
+            continue
+        for target in (1e-4, 1e-8):
+            times, ours, theirs = read_times(paths, target)
+            # A problem nobody solved has no quickest solver and says nothing of the order.
+            solvable = {problem: solved for problem, solved in times.items() if solved}
+            if solvable:
+                plot(solvable, ours, theirs, f"{family}: E <= {target:g}, cold starts, CPU time",
+                     os.path.join(arguments.images, f"{name}_1e{round(math.log10(target))}.png"))
 
 
 if __name__ == "__main__":

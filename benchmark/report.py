@@ -168,6 +168,79 @@ def exponent(points):
     return "%.2f" % (sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs))
 
 
+def gauss_seidel(results):
+    """A sentence on what Siconos's Gauss-Seidel does not solve, every storage tried, in the time of scenes_gauss_seidel."""
+    rows, limit = read(results, "scenes_gauss_seidel"), stage_facts(results, "scenes_gauss_seidel").get("limit")
+    if not rows or not limit:
+        return "Not measured yet."
+    lost, late = [], []
+    for problem, outcomes in group(rows, "1e-08").items():
+        by = {row["solver"]: row for row in outcomes}
+        ours, theirs = by[REFERENCE], by["siconos NSGS"]
+        name = f"{problem} ({ours['contacts']} contacts; `{REFERENCE}`: " + (
+            f"{duration(float(ours['seconds']))})" if solved(ours) else "unsolved)")
+        if solved(theirs):
+            late.append(f"{name[:-1]}, NSGS: {duration(float(theirs['seconds']))})")
+        else:
+            lost.append(name)
+    text = f"Given {limit} s for each of its four variants, E <= 1e-8 is still not reached on " + \
+           f"{len(lost)} of {len(lost) + len(late)}: {', '.join(lost)}." if lost else f"Given {limit} s it solves all of them."
+    return text + (f" It is solved late on: {', '.join(late)}." if late else "")
+
+
+def profile_ends(rows, target):
+    """({method: (quickest of all, within twice the quickest, solved)}, number of problems); 3D, as plotted."""
+    problems = group([row for row in rows if row["dimension"] == "3" and not row["solver"].startswith("thesis")], target)
+    by_solver = {}
+    for row in sum(problems.values(), []):
+        by_solver.setdefault(row["solver"], []).append(row)
+    by_solver = {solver: own for solver, own in by_solver.items() if len(own) == len(problems)}
+    best = {}
+    for row in sum(by_solver.values(), []):
+        if solved(row):
+            best[row["problem"]] = min(best.get(row["problem"], math.inf), float(row["seconds"]))
+    ends = {}
+    for solver, own in by_solver.items():
+        ratios = [float(row["seconds"]) / best[row["problem"]] for row in own if solved(row)]
+        name = f"`{solver}`" if own[0]["ours"] == "1" else solver
+        ends[name] = (sum(ratio <= 1.0 for ratio in ratios), sum(ratio <= 2.0 for ratio in ratios), len(ratios))
+    return ends, len(best)
+
+
+def profile_table(rows):
+    """The ends of the curves: all of Siconos's methods and the five of ours that are within twice the quickest most often."""
+    if not rows:
+        return "Not measured yet."
+    ends = {target: profile_ends(rows, target) for target in ("0.0001", "1e-08")}
+    tight = ends["1e-08"][0]
+    order = sorted(tight, key=lambda name: (-tight[name][1], -tight[name][2], name))
+    ours = [name for name in order if name.startswith("`")][:5]
+    lines = [[name] + [" / ".join(map(str, own[name])) if name in own else "-" for own, _ in ends.values()]
+             for name in ours + [name for name in order if not name.startswith("`")]]
+    return table(["quickest of all / within twice the quickest / solved"] +
+                 [f"E <= {float(target):.0e} ({count} problems)" for target, (_, count) in ends.items()], lines)
+
+
+def unsolved_by(rows, solver, target):
+    """Names of the problems of which `solver` solved none."""
+    names = [row["problem"] for row in rows if row["solver"] == solver and row["target"] == target and not solved(row)]
+    return f"{len(names)} of {len(group(rows, target))}" + (f": {', '.join(names)}" if names else "")
+
+
+def least_samples(tables, seconds):
+    """Least number of samples behind a compared time below so many seconds, ours and the best of theirs."""
+    counts = []
+    for rows in tables:
+        for target in targets_of(rows):
+            for outcomes in group(rows, target).values():
+                theirs = min((row for row in outcomes if row["ours"] == "0" and solved(row)),
+                             key=lambda row: float(row["seconds"]), default=None)
+                ours = [row for row in outcomes if row["solver"] == REFERENCE and solved(row)]
+                counts += [int(row["samples"]) for row in ours + ([theirs] if theirs else [])
+                           if float(row["seconds"]) < seconds]
+    return str(min(counts)) if counts else "?"
+
+
 def scaling(rows):
     if not rows:
         return "Not measured yet."
@@ -195,14 +268,21 @@ def scaling(rows):
                   "memory [MB]"], lines) + "\n\n" + "\n".join(f"* {note}" for note in notes)
 
 
+def stage_facts(results, stage):
+    path = os.path.join(results, stage + ".stage")
+    if not os.path.exists(path):
+        return {}
+    with open(path) as file:
+        return dict(zip(("name", "full", "limit", "seconds", "date", "cores"), file.read().strip().split(",")))
+
+
 def runs(results):
     lines = []
-    for stage in ("fclib", "families", "random_small", "random_large", "conditions", "scaling"):
-        path = os.path.join(results, stage + ".stage")
-        if os.path.exists(path):
-            with open(path) as file:
-                name, full, limit, seconds, date, cores = file.read().strip().split(",")
-            lines.append([name, date, cores, f"{limit} s", "yes" if full == "yes" else "no", f"{seconds} s"])
+    for stage in ("fclib", "families", "scenes", "random_small", "random_large", "conditions", "scaling"):
+        facts = stage_facts(results, stage)
+        if facts:
+            lines.append([facts["name"], facts["date"], facts["cores"], f"{facts['limit']} s", facts["full"],
+                          f"{facts['seconds']} s"])
     return table(["stage", "date", "cores", "time limit of a solve", "--full", "took"], lines)
 
 
@@ -238,15 +318,25 @@ def main():
     arguments = parser.parse_args()
     fclib, families = read(arguments.results, "fclib"), read(arguments.results, "families")
     small, large = read(arguments.results, "random_small"), read(arguments.results, "random_large")
+    bilaterals = read(arguments.results, "scenes_bilaterals")
+    scenes = read(arguments.results, "scenes") + bilaterals
     values = {
         "RUNS": runs(arguments.results),
         "RATIOS": ratios(fclib),
         "RATIOS_FAMILIES": ratios(families),
+        "RATIOS_SCENES": ratios(scenes),
+        "NSGS_SCENES": unsolved_by(scenes, "siconos NSGS", "1e-08"),
+        "NSGS_LONG": gauss_seidel(arguments.results),
+        "PROFILE_ENDS": profile_table(fclib),
+        "PROFILE_ENDS_LARGE": profile_table(large),
+        "PROFILE_ENDS_SCENES": profile_table(scenes),
         "RATIOS_RANDOM": "### Target 1e-08\n\n" + ratio_table(small, "1e-08") if small else "Not measured yet.",
-        "CLASSES": class_table(fclib + small + large, "1e-08"),
+        "RATIOS_LARGE": "### Target 1e-08\n\n" + ratio_table(large, "1e-08") if large else "Not measured yet.",
+        "SAMPLES": least_samples([fclib, families, scenes, small, large], 0.05),
+        "CLASSES": class_table(fclib + bilaterals + small + large, "1e-08"),
         "CLASSES_LOOSE": class_table(fclib, "0.0001"),
         "TABLE_5_7": thesis_tables([row for row in small if row["ours"] == "1"]),
-        "TABLE_5_9": thesis_tables(large),
+        "TABLE_5_9": thesis_tables([row for row in large if row["ours"] == "1" and row["target"] != "0.0001"]),
         "CONDITIONS": condition_table({"10": small, "1e3": read(arguments.results, "conditions_1e3"),
                                        "1e6": read(arguments.results, "conditions_1e6")}, "thesis 1e-06"),
         "COUNTS_5_7": count_lines(small, "thesis 1e-06"),

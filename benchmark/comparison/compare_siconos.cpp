@@ -10,20 +10,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include "comparison/isolation.h"
 #include "comparison/results.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "tools/tool_support.h"
 
 namespace
 {
 using namespace frictional_contact_sim;
 using namespace comparison;
 
-constexpr int BAD_INPUT = 2;
 constexpr int LARGEST_RANK = 1000;  ///< [rows] above, the rank of W is not computed
 
 struct Arguments
@@ -111,7 +110,7 @@ void run(Arguments& arguments)
   for (const Target& target : arguments.measure.targets)
     ratios.emplace_back(target, arguments.solvers.front() == "ours" ? "portfolio" : arguments.solvers.front());
   {
-    ProgressBar bar(files.size());
+    tools::ProgressBar bar(static_cast<long>(files.size()));
     for (std::size_t f = 0; f < files.size(); ++f)
     {
       FclibProblem problem;
@@ -121,13 +120,15 @@ void run(Arguments& arguments)
       }
       catch (const std::runtime_error& error)
       {
+        bar.clear();
         std::fprintf(stderr, "left out: %s\n", error.what());
         continue;
       }
       const DelassusProblem local = problem.kind == FclibKind::LOCAL ? problem.local : reduce(problem.global);
       const ProblemFacts facts = describe(files[f], problem, local);
-      const auto table = measure(local, makeEntries(local, arguments), arguments.measure,
-                                 [&](const std::string& text) { bar.show(f, facts.name + ": " + text); });
+      const auto table =
+          measure(local, makeEntries(local, arguments), arguments.measure,
+                  [&](const std::string& text) { bar.update(static_cast<long>(f), facts.name + ": " + text); });
       for (std::size_t t = 0; t < table.size(); ++t)
       {
         for (const Outcome& outcome : table[t])
@@ -146,7 +147,8 @@ int main(int argc, char** argv)
   Arguments arguments;
   CLI::App app(
       "Times our methods and Siconos's on the same local problems from r = 0, CPU time on one core. Each solver's own\n"
-      "tolerance is tightened until an independent judge is content; its quickest storage stands for it.");
+      "tolerance is tightened until an independent judge is content; its quickest storage stands for it.",
+      "compare_siconos");
   app.add_option("--files", arguments.files, "FCLib files or folders of them")->capture_default_str();
   app.add_option(
          "--solvers", arguments.solvers,
@@ -164,32 +166,24 @@ int main(int argc, char** argv)
                  "a solve may last so many times the first solver's; 0: only the time limit counts")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  app.add_flag("--every-variant", arguments.measure.every_variant,
+               "try every storage of a solver (default: two out of time are enough)");
   app.add_option("--samples", arguments.measure.samples, "cold starts a median is taken of")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--sampling-time", arguments.measure.sampling_time,
-                 "CPU time a solver may use for its samples of one problem [s]; slow ones get fewer, at least 3")
+  app.add_option(
+         "--sampling-time", arguments.measure.sampling_time,
+         "CPU time a solver may use for its samples of one problem [s]; slow ones get fewer, at least 3; the first "
+         "solver and the best of Siconos's get all below 50 ms a solve")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--output", arguments.output, "folder of the CSV")->capture_default_str();
   app.add_option("--name", arguments.name, "name of the CSV")->capture_default_str();
-  try
-  {
-    app.parse(argc, argv);
-    useOneBlasThread();
-    run(arguments);
-    return 0;
-  }
-  catch (const CLI::ParseError& error)
-  {
-    if (error.get_exit_code() == 0)
-      return app.exit(error);
-    std::cerr << "compare_siconos: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "compare_siconos: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
+  return tools::runTool(app, argc, argv,
+                        [&]
+                        {
+                          useOneBlasThread();
+                          run(arguments);
+                          return tools::SUCCESS;
+                        });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "comparison/isolation.h"
 
@@ -20,7 +21,9 @@ constexpr double LEAST_LIMIT = 0.1;  ///< what the give-up factor leaves at leas
 constexpr double KILL_FACTOR = 1.2;  ///< a process is ended when its solver has used more than its limit by this
 constexpr double KILL_MARGIN = 0.02;  ///< [s]
 constexpr double QUICK = 0.02;  ///< [s]
-constexpr int GIVE_UP = 2;  ///< so many variants of a solver out of time: the others are not tried
+constexpr int GIVE_UP = 2;  ///< so many variants of a solver out of time: the others are not tried, unless asked for
+/// The compared ones, the first solver and the quickest of Siconos's, get all samples while a sample is shorter [s].
+constexpr double COMPARED_SAMPLE = 0.05;
 
 /** What the child of a search leaves behind, one a target. */
 struct Finding
@@ -146,6 +149,7 @@ struct Runner
   int batch = 1;
   double* times = nullptr;
   int* count = nullptr;
+  double share = 0.0;  ///< of time for its samples [s]
   double used = 0.0;
 };
 
@@ -154,7 +158,7 @@ void sampleRounds(std::vector<Runner>& runners, const MeasureOptions& options)
   for (int round = 0; round < options.samples; ++round)
     for (Runner& runner : runners)
     {
-      if (runner.used > options.sampling_time && *runner.count >= MIN_SAMPLES)
+      if (runner.used > runner.share && *runner.count >= MIN_SAMPLES)
         continue;
       bool claimed = false;
       const double mean =
@@ -162,6 +166,17 @@ void sampleRounds(std::vector<Runner>& runners, const MeasureOptions& options)
       runner.used += mean * runner.batch;
       runner.times[(*runner.count)++] = mean;
     }
+}
+
+/** @return index of the quickest of Siconos's, or the number of outcomes */
+std::size_t quickestOfTheirs(const std::vector<Outcome>& outcomes)
+{
+  std::size_t best = outcomes.size();
+  for (std::size_t k = 0; k < outcomes.size(); ++k)
+    if (!outcomes[k].ours && outcomes[k].solved() &&
+        (best == outcomes.size() || outcomes[k].seconds < outcomes[best].seconds))
+      best = k;
+  return best;
 }
 
 double median(std::vector<double> values)
@@ -178,6 +193,7 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
   SharedMemory time_memory(outcomes.size() * stride * sizeof(double)), count_memory(outcomes.size() * sizeof(int));
   auto* times = time_memory.as<double>();
   auto* counts = count_memory.as<int>();
+  const std::size_t best = quickestOfTheirs(outcomes);
   runIsolated(
       [&]
       {
@@ -191,6 +207,9 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
             runner.batch = batchSize(outcomes[k].seconds);
             runner.times = times + k * stride;
             runner.count = counts + k;
+            runner.share = options.sampling_time;
+            if ((k == 0 || k == best) && outcomes[k].seconds < COMPARED_SAMPLE)
+              runner.share = std::numeric_limits<double>::infinity();
             runners.push_back(std::move(runner));
           }
         sampleRounds(runners, options);
@@ -222,7 +241,8 @@ std::vector<std::vector<Outcome>> measure(const DelassusProblem& problem, const 
     int out_of_time = 0;
     for (const Entry& entry : entries)
     {
-      if (entry.solver != solvers[s] || (out_of_time >= GIVE_UP && !outcomes.back()->solved()))
+      const bool hopeless = !options.every_variant && out_of_time >= GIVE_UP && !outcomes.back()->solved();
+      if (entry.solver != solvers[s] || hopeless)
         continue;
       progress(entry.solver);
       for (Outcome* outcome : outcomes)

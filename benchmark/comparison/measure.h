@@ -7,7 +7,8 @@
  * solver's variants (storages, linear solvers) the quickest stands for it.
  * Timing, one child process a problem and target: rounds in which every solver solves once from r = 0, in order. A
  * sample is the mean of as many solves as last 0.2 ms (a solve of 2 us is no sample), the result the median of the
- * samples. A solver leaves the rounds when it has used its share of time.
+ * samples. A solver leaves the rounds when it has used its share of time; the first solver and the quickest of
+ * Siconos's, whose ratio is reported, get all samples as long as a solve lasts less than 50 ms.
  */
 #include <functional>
 #include <string>
@@ -24,6 +25,7 @@ struct MeasureOptions
   double time_limit = 3.0;  ///< CPU time of a solve [s]
   double give_up_factor =
       0.0;  ///< a solve may last so many times the first solver's at the tightest target; 0: no rule
+  bool every_variant = false;  ///< also where two variants of a solver ran out of time
   int samples = 21;
   double sampling_time = 1.0;  ///< CPU time a solver may use for its samples [s]; at least 3 are taken
 };

@@ -1,7 +1,5 @@
 #include "comparison/results.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,8 +9,6 @@ namespace comparison
 {
 namespace
 {
-constexpr int BAR_WIDTH = 30;
-
 std::string duration(double seconds)
 {
   char text[32];
@@ -42,25 +38,6 @@ void CsvTable::add(const ProblemFacts& facts, const Target& target, const Outcom
         << (outcome.ours ? 1 : 0) << ',' << target.label() << ',' << outcome.tolerance << ',' << outcome.status << ','
         << outcome.judgement.residual << ',' << outcome.judgement.thesis << ',' << outcome.seconds << ','
         << outcome.samples << std::endl;
-}
-
-ProgressBar::ProgressBar(std::size_t total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1)
-{
-}
-
-ProgressBar::~ProgressBar()
-{
-  if (terminal_)
-    std::fprintf(stderr, "\r\033[K");
-}
-
-void ProgressBar::show(std::size_t done, const std::string& text)
-{
-  if (!terminal_)
-    return;
-  const int filled = total_ > 0 ? static_cast<int>(BAR_WIDTH * done / total_) : BAR_WIDTH;
-  std::fprintf(stderr, "\r\033[K[%.*s%*s] %zu/%zu %s", filled, "##############################", BAR_WIDTH - filled, "",
-               done, total_, text.c_str());
 }
 
 RatioTable::RatioTable(const Target& target, const std::string& reference)

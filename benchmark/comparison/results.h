@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file results.h
- * @brief What a comparison leaves: one CSV row a problem, solver and target; a progress bar; the table of ratios.
+ * @brief What a comparison leaves: one CSV row a problem, solver and target; the table of ratios.
  */
 #include <fstream>
 #include <string>
@@ -31,19 +31,6 @@ public:
 
 private:
   std::ofstream file_;
-};
-
-/** @brief One line on stderr, only on a terminal. */
-class ProgressBar
-{
-public:
-  explicit ProgressBar(std::size_t total);
-  ~ProgressBar();
-  void show(std::size_t done, const std::string& text);
-
-private:
-  std::size_t total_;
-  bool terminal_;
 };
 
 /** @brief Prints portfolio against the best Siconos solver, line by line, and keeps the ratios of a target. */

@@ -15,21 +15,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 
 #include "comparison/isolation.h"
-#include "comparison/results.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/rigid_families.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "support/validator.h"
+#include "tools/tool_support.h"
 
 namespace
 {
 using namespace frictional_contact_sim;
 using namespace comparison;
 
-constexpr int BAD_INPUT = 2;
 constexpr int DENSE_CONTACTS = 300;
 constexpr double KILL_FACTOR = 2.0;  ///< one factorization may outlast the limit: the process is ended then
 constexpr double REPEAT_TIME = 0.5;  ///< short solves are repeated for so long and the least time kept [s]
@@ -122,12 +120,12 @@ void run(const Arguments& arguments)
   if (!csv)
     throw std::runtime_error(arguments.output + "/scaling.csv: cannot be written");
   csv << "contacts,velocities,solver,status,residual,validator,iterations,reduction_seconds,seconds,megabytes\n";
-  ProgressBar bar(arguments.contacts.size() * arguments.solvers.size());
-  std::size_t done = 0;
+  tools::ProgressBar bar(static_cast<long>(arguments.contacts.size() * arguments.solvers.size()));
+  long done = 0;
   for (const std::string& name : arguments.solvers)
     for (const int contacts : arguments.contacts)
     {
-      bar.show(done++, name + " with " + std::to_string(contacts) + " contacts");
+      bar.update(done++, name + " with " + std::to_string(contacts) + " contacts");
       SharedMemory memory(sizeof(Row));
       Row& row = *memory.as<Row>();
       const Ending ending = runIsolated([&] { fill(arguments, name, contacts, row); });
@@ -144,7 +142,8 @@ void run(const Arguments& arguments)
 int main(int argc, char** argv)
 {
   Arguments arguments;
-  CLI::App app("Time and memory of methods on granular packings of growing size; writes scaling.csv.");
+  CLI::App app("Time and memory of methods on granular packings of growing size; writes scaling.csv.",
+               "measure_scaling");
   app.add_option("--contacts", arguments.contacts, "sizes")->delimiter(',')->capture_default_str();
   app.add_option("--solvers", arguments.solvers, "our methods")->delimiter(',')->capture_default_str();
   app.add_option("--tolerance", arguments.tolerance, "on E [-]")->check(CLI::PositiveNumber)->capture_default_str();
@@ -152,22 +151,10 @@ int main(int argc, char** argv)
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--output", arguments.output, "folder of the CSV")->capture_default_str();
-  try
-  {
-    app.parse(argc, argv);
-    run(arguments);
-    return 0;
-  }
-  catch (const CLI::ParseError& error)
-  {
-    if (error.get_exit_code() == 0)
-      return app.exit(error);
-    std::cerr << "measure_scaling: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "measure_scaling: " << error.what() << "\n";
-    return BAD_INPUT;
-  }
+  return tools::runTool(app, argc, argv,
+                        [&]
+                        {
+                          run(arguments);
+                          return tools::SUCCESS;
+                        });
 }

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Writes scenes of many bodies (YAML, URDF, OBJ) for run_scenario --dump: real friction problems of 1 to 700 contacts.
 
-    generate_scenes.py OUT [--robots DIR]     DIR: example-robot-data's robots folder, for the legged robots and the hand
+    generate_scenes.py OUT [--robots DIR]     DIR: example-robot-data's robots folder, for more legged robots; its
+                                              grandparent must be on ROS_PACKAGE_PATH
 
-OUT/scenes.tsv lists: scene, steps to run, dump every N steps. Same output for the same script: one fixed seed a scene.
+OUT/scenes.tsv lists: scene, steps it lasts, dump every N steps. Same output for the same script: one fixed seed a scene.
 """
 import argparse
 import math
@@ -13,12 +14,14 @@ import random
 import geometry as solid
 
 SOLVER = 'solver: {name: portfolio, tolerance: 1.0e-7, max_iterations: 300}'
+OWN_URDF = pathlib.Path(__file__).resolve().parents[2] / 'urdf'
 
 
 class Scene:
     def __init__(self, folder, name, friction, restitution=0.0, time_step=0.001, ground=True, gravity=(0, 0, -9.81)):
         self.folder, self.name = folder, name
         self.rng = random.Random(name)
+        self.time_step = time_step
         self.lines = [f'time_step: {time_step}', f'gravity: [{gravity[0]}, {gravity[1]}, {gravity[2]}]', SOLVER,
                       f'materials: {{default: {{friction: {friction}, restitution: {restitution}}}}}']
         if ground:
@@ -46,6 +49,7 @@ class Scene:
         return [self.rng.uniform(-math.pi, math.pi) for _ in range(3)]
 
     def close(self, steps, every):
+        self.lines.insert(0, f'duration: {steps * self.time_step:.12g}')
         self.file(self.name + '.yaml', '\n'.join(self.lines) + '\n')
         with open(self.folder / 'scenes.tsv', 'a') as table:
             table.write(f'{self.name}\t{steps}\t{every}\n')
@@ -104,10 +108,9 @@ def round_tower(out, sides, layers, friction, steps, every):
     scene.close(steps, every)
 
 
-def pile(out, kind, count, friction, steps, every, restitution=0.0, time_step=0.002):
-    """Bodies of one kind fall into an open box."""
+def pile(out, kind, count, friction, steps, every, restitution=0.0, time_step=0.002, spacing=0.13):
+    """Bodies of one kind fall into an open box; the grippers' fingers mimic each other (bilateral rows)."""
     scene = Scene(out, f'{kind}{count}', friction, restitution, time_step, ground=False)
-    spacing = 0.13
     across = max(2, round(count**(1 / 3)))
     container = scene.file(f'container{across}.urdf', solid.open_box('container', across * spacing, 4 * spacing, 0.1))
     scene.body(container, (0, 0, 0), base='fixed')
@@ -118,6 +121,8 @@ def pile(out, kind, count, friction, steps, every, restitution=0.0, time_step=0.
         urdfs = [scene.file('capsule.urdf', solid.capsule('capsule', 0.025, 0.06, 1000))]
     elif kind == 'boxes':
         urdfs = [scene.file('crate.urdf', solid.box('crate', (0.09, 0.07, 0.05), 800))]
+    elif kind == 'grippers':
+        urdfs = [OWN_URDF / 'gripper_mimic.urdf']
     else:
         for i in range(6):
             text, obj, _ = solid.rock(f'rock{i}', random.Random(i), 0.06, 2600)
@@ -148,8 +153,18 @@ def arch(out, stones, friction, steps, every, push=0.0, suffix=''):
     scene.close(steps, every)
 
 
-def chain_urdf(links):
-    """Capsule links joined by two continuous joints with a light cross piece."""
+def grasp(out, friction, steps, every):
+    """A gripper, palm down, holds a cube; one finger is driven, the other mimics it (a bilateral row)."""
+    scene = Scene(out, 'grasp', friction, ground=False)
+    scene.body(OWN_URDF / 'gripper_mimic.urdf', (0, 0, 0.5), (math.pi, 0, 0), base='fixed',
+               more=['joints: {left_slide: {position: 0.05}, right_slide: {position: 0.05}}',
+                     'commands: {left_slide: {effort: -24}}'])
+    scene.body(OWN_URDF / 'cube.urdf', (0, 0, 0.4))
+    scene.close(steps, every)
+
+
+def chain_urdf(links, coupled):
+    """Capsule links joined by two continuous joints with a light cross piece; coupled: all bend as the first does."""
     text = ['<?xml version="1.0"?>', '<robot name="chain">']
     for i in range(links):
         text.append(f'<link name="l{i}"><inertial><origin xyz="0 0 0.05"/><mass value="0.2"/><inertia ixx="2e-4" ixy="0" '
@@ -159,17 +174,18 @@ def chain_urdf(links):
             continue
         text.append(f'<link name="c{i}"><inertial><mass value="0.02"/><inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" '
                     'iyz="0" izz="1e-5"/></inertial></link>')
+        mimic = {axis: f'<mimic joint="{axis}1"/>' if coupled and i > 1 else '' for axis in 'xy'}
         text.append(f'<joint name="x{i}" type="continuous"><parent link="l{i - 1}"/><child link="c{i}"/><origin '
-                    'xyz="0 0 0.1"/><axis xyz="1 0 0"/><dynamics damping="1e-3"/></joint>')
+                    f'xyz="0 0 0.1"/><axis xyz="1 0 0"/><dynamics damping="1e-3"/>{mimic["x"]}</joint>')
         text.append(f'<joint name="y{i}" type="continuous"><parent link="c{i}"/><child link="l{i}"/><axis '
-                    'xyz="0 1 0"/><dynamics damping="1e-3"/></joint>')
+                    f'xyz="0 1 0"/><dynamics damping="1e-3"/>{mimic["y"]}</joint>')
     return '\n'.join(text + ['</robot>', ''])
 
 
-def chain(out, links, friction, steps, every):
+def chain(out, links, friction, steps, every, coupled=False):
     """An articulated chain falls over a fixed bar and coils on the ground."""
-    scene = Scene(out, f'chain{links}', friction)
-    urdf = scene.file(f'chain{links}.urdf', chain_urdf(links))
+    scene = Scene(out, f'chain{links}' + ('coupled' if coupled else ''), friction)
+    urdf = scene.file(f'{scene.name}.urdf', chain_urdf(links, coupled))
     bar = scene.file('bar.urdf', solid.box('bar', (0.1, 1.0, 0.1), 1000))
     scene.body(bar, (0, 0, 0.3), (0.0, 0.4, 0.0), base='fixed')
     scene.body(urdf, (-0.05 * links, 0.02, 0.45), (0, math.pi / 2, 0.1))
@@ -235,11 +251,10 @@ def robot(out, name, path, friction, steps, every, base='floating', height=None,
 
 
 def robots(out, folder):
-    own = pathlib.Path(__file__).resolve().parents[2] / 'urdf'
     legs = ', '.join(f'{leg}_{j}: {{position: {s * p}}}' for leg, s in (('LF', 1), ('RF', 1), ('LH', -1), ('RH', -1))
                      for j, p in (('HFE', 0.7), ('KFE', -1.4)))
-    robot(out, 'quadrupedstand', own / 'quadruped.urdf', 0.8, 300, 150, more=[f'joints: {{{legs}}}'])
-    robot(out, 'quadrupedslide', own / 'quadruped.urdf', 0.3, 160, 80, linear=(1.5, 0.4, 0), more=[f'joints: {{{legs}}}'])
+    robot(out, 'quadrupedstand', OWN_URDF / 'quadruped.urdf', 0.8, 300, 150, more=[f'joints: {{{legs}}}'])
+    robot(out, 'quadrupedslide', OWN_URDF / 'quadruped.urdf', 0.3, 160, 80, linear=(1.5, 0.4, 0), more=[f'joints: {{{legs}}}'])
     if folder is None:
         return
     robot(out, 'anymalfall', folder / 'anymal_b_simple_description/robots/anymal.urdf', 0.7, 400, 100, height=0.6)
@@ -290,6 +305,11 @@ def main():
     arch(out, 31, 0.5, 40, 20)
     chain(out, 10, 0.4, 600, 200)
     chain(out, 25, 0.8, 600, 200)
+    chain(out, 10, 0.4, 300, 100, coupled=True)
+    chain(out, 25, 0.8, 300, 100, coupled=True)
+    grasp(out, 0.7, 200, 100)
+    pile(out, 'grippers', 8, 0.6, 300, 100, spacing=0.2)
+    pile(out, 'grippers', 27, 0.4, 300, 100, spacing=0.2)
     rover(out, 0.6, 900, 300, 'drive', False)
     rover(out, 1.0, 600, 200, 'skid', True)
     robots(out, arguments.robots)

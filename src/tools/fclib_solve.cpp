@@ -44,14 +44,11 @@ void listSolvers()
     std::printf("%-22s %-10s  %s (%s)\n", entry.name, toString(entry.uses), entry.summary, entry.reference);
 }
 
-/**
- * A line on the error output with the solves done and the time, only on a terminal and once the work has lasted two
- * seconds. A thread of its own: a method does not tell how far it is.
- */
+/** A progress bar with the seconds gone by, drawn by a thread of its own: a method does not tell how far it is. */
 class WaitingLine
 {
 public:
-  explicit WaitingLine(int total) : total_(total), thread_(&WaitingLine::show, this) {}
+  explicit WaitingLine(int total) : bar_(total), thread_(&WaitingLine::show, this) {}
   ~WaitingLine()
   {
     {
@@ -72,25 +69,12 @@ public:
 private:
   void show()
   {
-    if (isatty(STDERR_FILENO) == 0)
-      return;
     std::unique_lock<std::mutex> lock(mutex_);
-    const auto over = [this] { return finished_; };
-    if (changed_.wait_for(lock, std::chrono::seconds(2), over))
-      return;
-    for (int seconds = 2; !finished_; ++seconds)
-    {
-      const int filled = WIDTH * done_ / total_;
-      std::cerr << "\r[" << std::string(static_cast<std::size_t>(filled), '#')
-                << std::string(static_cast<std::size_t>(WIDTH - filled), '.') << "] " << done_ << " of " << total_
-                << " solves, " << seconds << " s" << std::flush;
-      changed_.wait_for(lock, std::chrono::seconds(1), over);
-    }
-    std::cerr << '\r' << std::string(WIDTH + 40, ' ') << '\r' << std::flush;
+    for (int seconds = 1; !changed_.wait_for(lock, std::chrono::seconds(1), [this] { return finished_; }); ++seconds)
+      bar_.update(done_, std::to_string(seconds) + " s");
   }
 
-  static constexpr int WIDTH = 40;
-  int total_;
+  tools::ProgressBar bar_;
   int done_ = 0;
   bool finished_ = false;
   std::mutex mutex_;

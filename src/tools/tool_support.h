@@ -42,34 +42,40 @@ public:
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /** @brief Cheap enough for every step of fast work: looks at the clock only when the percentage has changed. */
-  void update(long done)
+  /**
+   * @brief Cheap enough for every step of fast work: looks at the clock only when percentage or text have changed.
+   * @param text stands behind the bar
+   */
+  void update(long done, const std::string& text = "")
   {
     const long percent = total_ > 0 ? 100 * done / total_ : 100;
-    if (!terminal_ || percent == last_)
+    if (!terminal_ || (percent == last_ && text == text_))
       return;
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < 2.0)
       return;
     last_ = percent;
+    text_ = text;
     shown_ = true;
     const auto filled = static_cast<std::size_t>(percent * WIDTH / 100);
-    std::cerr << "\r[" << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " %"
-              << std::flush;
+    std::cerr << WIPE << '[' << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " % "
+              << text << std::flush;
   }
 
   /** @brief Wipes the bar, so that a line of text can be written; the next update draws it again. */
   void clear()
   {
     if (shown_)
-      std::cerr << '\r' << std::string(WIDTH + 10, ' ') << '\r' << std::flush;
+      std::cerr << WIPE << std::flush;
     shown_ = false;
     last_ = -1;
   }
 
 private:
   static constexpr std::size_t WIDTH = 40;
+  static constexpr const char* WIPE = "\r\033[K";
   long total_;
   long last_ = -1;
+  std::string text_;
   bool terminal_;
   bool shown_ = false;
   std::chrono::steady_clock::time_point start_;
