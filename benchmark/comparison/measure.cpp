@@ -22,8 +22,10 @@ constexpr double KILL_FACTOR = 1.2;  ///< a process is ended when its solver has
 constexpr double KILL_MARGIN = 0.02;  ///< [s]
 constexpr double QUICK = 0.02;  ///< [s]
 constexpr int GIVE_UP = 2;  ///< so many variants of a solver out of time: the others are not tried, unless asked for
-/// The compared ones, the first solver and the quickest of Siconos's, get all samples while a sample is shorter [s].
-constexpr double COMPARED_SAMPLE = 0.05;
+/// The compared ones, the first solver and Siconos's quickest, get all samples while a solve is shorter than this [s]:
+/// twice what is promised, and twice the quickest, since the search times a solver only a few times.
+constexpr double COMPARED_SOLVE = 0.1;
+constexpr double NEARLY_QUICKEST = 2.0;
 
 /** What the child of a search leaves behind, one a target. */
 struct Finding
@@ -168,15 +170,14 @@ void sampleRounds(std::vector<Runner>& runners, const MeasureOptions& options)
     }
 }
 
-/** @return index of the quickest of Siconos's, or the number of outcomes */
-std::size_t quickestOfTheirs(const std::vector<Outcome>& outcomes)
+/** Whether an outcome, or one as quick as the search can tell, stands in the table of ratios. */
+bool compared(const std::vector<Outcome>& outcomes, std::size_t k)
 {
-  std::size_t best = outcomes.size();
-  for (std::size_t k = 0; k < outcomes.size(); ++k)
-    if (!outcomes[k].ours && outcomes[k].solved() &&
-        (best == outcomes.size() || outcomes[k].seconds < outcomes[best].seconds))
-      best = k;
-  return best;
+  double quickest = std::numeric_limits<double>::infinity();
+  for (const Outcome& outcome : outcomes)
+    if (!outcome.ours && outcome.solved())
+      quickest = std::min(quickest, outcome.seconds);
+  return k == 0 || (!outcomes[k].ours && outcomes[k].seconds <= NEARLY_QUICKEST * quickest);
 }
 
 double median(std::vector<double> values)
@@ -193,7 +194,6 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
   SharedMemory time_memory(outcomes.size() * stride * sizeof(double)), count_memory(outcomes.size() * sizeof(int));
   auto* times = time_memory.as<double>();
   auto* counts = count_memory.as<int>();
-  const std::size_t best = quickestOfTheirs(outcomes);
   runIsolated(
       [&]
       {
@@ -208,7 +208,7 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
             runner.times = times + k * stride;
             runner.count = counts + k;
             runner.share = options.sampling_time;
-            if ((k == 0 || k == best) && outcomes[k].seconds < COMPARED_SAMPLE)
+            if (compared(outcomes, k) && outcomes[k].seconds < COMPARED_SOLVE)
               runner.share = std::numeric_limits<double>::infinity();
             runners.push_back(std::move(runner));
           }
