@@ -2,9 +2,9 @@
 """Performance profiles (Dolan, More 2002) of comparisons: plot_profiles.py --results FOLDER --images FOLDER
 
 rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all. One
-picture a family of problems and target, 1e-4 and 1e-8 of the residual E, judged by the independent validator. Left: our
-methods, where more than the portfolio was tried; right: Siconos's; our portfolio in both. 3D problems only: a solver is not to be
-blamed for problems it is not made for.
+picture a family of problems and target, 1e-4 and 1e-8 of the residual E, judged by the independent validator. Left:
+our methods, where more than the portfolio was tried; right: Siconos's; our portfolio in both. 3D problems only: a solver
+is not to be blamed for problems it is not made for.
 """
 import argparse
 import csv
@@ -17,11 +17,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 LARGEST_RATIO = 100.0
-
-
 # Name of the pictures, title, CSV files. Several files are one family, be it other problems or other solvers (the first
 # file counts where a solver is in both); a solver not tried on all problems is left out.
-FAMILIES = [("profile", "FCLib, 3D", ["fclib"]), ("profile_large", "Large random problems of the thesis", ["random_large", "random_large_siconos"]),
+FAMILIES = [("profile", "FCLib, 3D", ["fclib"]),
+            ("profile_large", "Large random problems of the thesis", ["random_large", "random_large_siconos"]),
             ("profile_scenes", "Scenes of the simulator", ["scenes", "scenes_bilaterals"])]
 
 

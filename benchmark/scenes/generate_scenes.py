@@ -4,7 +4,7 @@
     generate_scenes.py OUT [--robots DIR]     DIR: example-robot-data's robots folder, for more legged robots; its
                                               grandparent must be on ROS_PACKAGE_PATH
 
-OUT/scenes.tsv lists: scene, steps it lasts, dump every N steps. Same output for the same script: one fixed seed a scene.
+OUT/scenes.tsv lists: scene, steps it lasts, dump every N steps. Same output for the same script: one seed a scene.
 """
 import argparse
 import math
@@ -254,7 +254,8 @@ def robots(out, folder):
     legs = ', '.join(f'{leg}_{j}: {{position: {s * p}}}' for leg, s in (('LF', 1), ('RF', 1), ('LH', -1), ('RH', -1))
                      for j, p in (('HFE', 0.7), ('KFE', -1.4)))
     robot(out, 'quadrupedstand', OWN_URDF / 'quadruped.urdf', 0.8, 300, 150, more=[f'joints: {{{legs}}}'])
-    robot(out, 'quadrupedslide', OWN_URDF / 'quadruped.urdf', 0.3, 160, 80, linear=(1.5, 0.4, 0), more=[f'joints: {{{legs}}}'])
+    robot(out, 'quadrupedslide', OWN_URDF / 'quadruped.urdf', 0.3, 160, 80, linear=(1.5, 0.4, 0),
+          more=[f'joints: {{{legs}}}'])
     if folder is None:
         return
     robot(out, 'anymalfall', folder / 'anymal_b_simple_description/robots/anymal.urdf', 0.7, 400, 100, height=0.6)
