@@ -183,7 +183,7 @@ def gauss_seidel(results):
         elif theirs["status"] == "not reached":
             lost.append(f"{entry}, NSGS ends at E = {float(theirs['residual']):.1e})")
         else:
-            lost.append(f"{entry}, NSGS {theirs['status']})")
+            lost.append(f"{entry}, NSGS out of time)" if theirs["status"] == "time limit" else f"{entry}, NSGS crashed)")
     text = f"On those of up to 300 contacts it was given {limit} s for each of its four variants. "
     if lost:
         text += f"E <= 1e-8 is still not reached on {len(lost)} of {len(rows) // 2}: {', '.join(lost)}. "
