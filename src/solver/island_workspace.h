@@ -53,7 +53,6 @@ struct IslandWorkspace
   std::vector<int> position;  ///< of every law of the whole in the present island, or -1
   std::vector<IslandSlot> slots;
   long clock = 0;
-  bool cold = false;  ///< no guess: the method's own start serves each island
   Eigen::VectorXd velocity;  ///< u of the guess
   Eigen::VectorXd errors;  ///< of the laws at the guess [m/s]
   Eigen::VectorXd step_lengths;  ///< of the whole

@@ -20,9 +20,10 @@ namespace
 constexpr int STALL_WINDOW = 20;
 /// Above Newton's first proximal parameter, below its restart.
 constexpr double WATCHDOG_MIN = 1e-5;
-/// Newton on a small problem aims this far below the tolerance: its last step costs little, and a scene at rest then
-/// stays within the tolerance for many warm-started steps instead of drifting out of it at once.
-constexpr double NEWTON_MARGIN = 1e-2;
+/// With a guess a problem is one of a series, as a rule. Newton on a small one then aims this far below the tolerance:
+/// its last step costs little, and a scene at rest stays within the tolerance for many steps instead of drifting out of
+/// it at once.
+constexpr double SERIES_MARGIN = 1e-4;
 
 void require(bool condition, const char* name, int value, int least)
 {
@@ -204,7 +205,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   options.watchdog_min = newton_first ? WATCHDOG_MIN : 0.0;
   newton_->setOptions(options);
   if (!done)
-    done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, NEWTON_MARGIN)
+    done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, coldStart() ? 1.0 : SERIES_MARGIN)
                         : run(*gauss_seidel_, problem, options_.first_sweeps, result);
   if (!newton_first && newton)
     done = done || run(*newton_, problem, options_.newton_steps, result);

@@ -13,6 +13,8 @@ namespace
 {
 /// An inner solve is good enough when its error is below this share of the proximal perturbation.
 constexpr double INNER_SHARE = 0.1;
+/// An iterate whose error is below this share of its predecessor's is a better centre than the one so far.
+constexpr double MOVE_SHARE = 0.1;
 /// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
 constexpr double ZERO_DIAGONAL = 1e-14;
 
@@ -166,11 +168,27 @@ void SemismoothNewton::keepBest(double value, const Eigen::VectorXd& r)
   }
 }
 
+void SemismoothNewton::moveCentre(const Eigen::VectorXd& r)
+{
+  centre_ = r;
+  alpha_ = std::max(options_.proximal_decrease * alpha_, options_.proximal_min);
+}
+
+/** Jacobians and 1/2 |Phi/rho|^2 of the proximal problem at r, u_ given. @return twice the merit */
+double SemismoothNewton::evaluateProximal(const DelassusProblem& problem, const Eigen::VectorXd& r)
+{
+  step_ = alpha_ * weight_.cwiseProduct(r - centre_);
+  perturbation_ = step_.squaredNorm();
+  u_alpha_ = u_ + step_;
+  return evaluate(problem, u_alpha_, r, true);
+}
+
 SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& problem, SolverResult& result)
 {
   Eigen::VectorXd& r = result.solution.r;
   history_count_ = 0;
-  for (int k = 0; k <= options_.inner_iterations; ++k)
+  double last_value = 0.0;
+  for (int k = 0;; ++k)
   {
     problem.W.apply(r, u_);
     u_ += problem.q;
@@ -178,14 +196,18 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
     keepBest(value, r);
     if (value <= stopping().tolerance)
       return Inner::CONVERGED;
-    u_alpha_.array() = u_.array() + alpha_ * weight_.array() * (r - centre_).array();
-    const double merit = evaluate(problem, u_alpha_, r, true);
-    if (!std::isfinite(merit))
-      return Inner::FAILED;
-    const double perturbation = (alpha_ * weight_.array() * (r - centre_).array()).matrix().squaredNorm();
-    if (k > 0 && merit <= INNER_SHARE * INNER_SHARE * perturbation)
-      return Inner::SUCCESS;
-    if (k == options_.inner_iterations)
+    if (value <= MOVE_SHARE * last_value)
+      moveCentre(r);
+    last_value = value;
+    double merit = evaluateProximal(problem, r);
+    if (merit <= INNER_SHARE * INNER_SHARE * perturbation_)
+    {
+      moveCentre(r);
+      history_count_ = 0;
+      k = 0;
+      merit = evaluateProximal(problem, r);
+    }
+    if (!std::isfinite(merit) || k >= options_.inner_iterations)
       return Inner::FAILED;
     if (result.iterations >= stopping().max_iterations || timeIsUp())
       return Inner::OUT_OF_BUDGET;
@@ -198,7 +220,6 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
       return Inner::FAILED;
     r += t * step_;
   }
-  return Inner::FAILED;
 }
 
 void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
@@ -207,12 +228,12 @@ void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& res
   Eigen::VectorXd& r = result.solution.r;
   best_value_ = std::numeric_limits<double>::infinity();
   best_r_ = r;
+  centre_ = r;
   alpha_ = options_.proximal_start;
   result.status = SolverStatus::STAGNATED;
   result.message = "no proximal parameter leads on";
   while (true)
   {
-    centre_ = r;
     const Inner inner = solveProximal(problem, result);
     result.residual = best_value_;
     if (inner == Inner::CONVERGED)
@@ -227,15 +248,10 @@ void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& res
       result.message = time ? "time limit reached" : "Newton iterations exhausted";
       break;
     }
-    if (inner == Inner::SUCCESS)
-      alpha_ = std::max(options_.proximal_decrease * alpha_, options_.proximal_min);
-    else
-    {
-      if (alpha_ >= options_.proximal_max)
-        break;
-      alpha_ = std::clamp(options_.proximal_increase * alpha_, options_.proximal_restart, options_.proximal_max);
-      r = centre_;
-    }
+    if (alpha_ >= options_.proximal_max)
+      break;
+    alpha_ = std::clamp(options_.proximal_increase * alpha_, options_.proximal_restart, options_.proximal_max);
+    r = centre_;
   }
   r = best_r_;
 }

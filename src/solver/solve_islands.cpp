@@ -155,6 +155,7 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   method.stopping_ = stopping_;
   method.start_ = start_;
   method.deadline_ = deadline;
+  method.cold_start_ = cold_start_;
   method.free_velocity_ = islands_->scale(whole, whole_free_velocity);
   method.step_lengths_ = slot.step_lengths;
   std::vector<int>& position = islands_->position;
@@ -166,7 +167,7 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   SolverResult& result = slot.result;
   try
   {
-    if (islands_->cold)
+    if (cold_start_)
     {
       // As if the island were alone: the start of the whole may be scaled by what others need.
       method.solveAtOnce(slot.problem, result);

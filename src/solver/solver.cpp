@@ -136,6 +136,7 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.stopping_.max_iterations = max_iterations;
   method.start_ = start_;
   method.deadline_ = deadline_;
+  method.cold_start_ = cold_start_;
   method.step_lengths_ = step_lengths_;
   method.free_velocity_ = free_velocity_;
   result.residual = UNKNOWN;
@@ -195,7 +196,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
     result.solution.r = guess->r;
     result.residual = UNKNOWN;
   }
-  islands_->cold = guess == nullptr;
+  cold_start_ = guess == nullptr;
   if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
     solveIslands(problem, result);
   else

@@ -130,6 +130,18 @@ TEST(DenseLuTest, SolvesWithPivoting)
   EXPECT_FALSE(lu.factor());
 }
 
+// Twelve rows of rank six: only the proximal term makes the Jacobian regular. Every contact sticks, so that the
+// equations are linear and one step solves them but for what that term, 1e-6, leaves: its square.
+TEST(AcNewtonTest, ProximalTermLeavesOnlyItsSquareInAStepFromTheCentre)
+{
+  const IncrementalProblem problem = restingBox(1, {1, 1, 1}, 0.5, {0, 0, 0}, GRAVITY, TIME_STEP);
+  AcNewton newton;
+  newton.setStopping(stopping(1e-10));
+  const SolverResult result = newton.solve(problem);
+  EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.residual;
+  EXPECT_EQ(result.iterations, 1);
+}
+
 TEST(AcNewtonTest, SurvivesTheSingularJacobianOfExampleD2)
 {
   const IncrementalProblem problem = squareOnTwoContacts();

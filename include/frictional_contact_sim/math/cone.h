@@ -89,10 +89,11 @@ inline Vector<D> projectOntoBall(const Vector<D>& x, double radius)
   return (radius / norm) * x;
 }
 
-/** @brief Derivatives of projectOntoBall by x and by the radius. */
+/** @brief projectOntoBall with its derivatives by x and by the radius. */
 template <int D>
 struct BallJacobian
 {
+  Vector<D> value;
   SquareMatrix<D> by_x;
   Vector<D> by_radius;
 };
@@ -104,15 +105,18 @@ inline BallJacobian<D> ballProjectionJacobian(const Vector<D>& x, double radius)
   jacobian.by_radius.setZero();
   if (radius <= 0.0)
   {
+    jacobian.value.setZero();
     jacobian.by_x.setZero();
     return jacobian;
   }
   const double norm = x.norm();
   if (norm <= radius)
   {
+    jacobian.value = x;
     jacobian.by_x.setIdentity();
     return jacobian;
   }
+  jacobian.value = (radius / norm) * x;
   const Vector<D> s = x / norm;
   jacobian.by_x = (radius / norm) * (SquareMatrix<D>::Identity() - s * s.transpose());
   jacobian.by_radius = s;

@@ -75,11 +75,11 @@ inline ContactFunction<D> alartCurnierJacobian(const Vector<D>& u, const Vector<
 {
   constexpr int T = D - 1;
   ContactFunction<D> f;
-  f.value = alartCurnier<D>(u, r, mu, rho_normal, rho_tangential, rule);
   f.by_u.setZero();
   f.by_r = -SquareMatrix<D>::Identity();
   const double trial = r[0] - rho_normal * u[0];
   const bool active = trial > 0.0;
+  f.value[0] = (active ? trial : 0.0) - r[0];
   if (active)
   {
     f.by_u(0, 0) = -rho_normal;
@@ -88,6 +88,7 @@ inline ContactFunction<D> alartCurnierJacobian(const Vector<D>& u, const Vector<
   const double radius = mu * (rule == RadiusRule::IMPULSE ? r[0] : trial);
   const Vector<T> y = r.template tail<T>() - rho_tangential * u.template tail<T>();
   const BallJacobian<T> ball = ballProjectionJacobian<T>(y, radius);
+  f.value.template tail<T>() = ball.value - r.template tail<T>();
   f.by_u.template block<T, T>(1, 1) = -rho_tangential * ball.by_x;
   f.by_r.template block<T, T>(1, 1) += ball.by_x;
   f.by_r.template block<T, 1>(1, 0) = mu * ball.by_radius;

@@ -7,7 +7,8 @@
  *   inner   (A (W + alpha D) + B) dr = -f(u_alpha, r),   A = df/du, B = df/dr block-diagonal
  *           r <- r + t dr, t by a nonmonotone backtracking (Grippo, Lampariello, Lucidi 1986) on 1/2 |Phi/rho|^2,
  *           and the full step where no t decreases it (a watchdog: the inner budget ends a bad excursion)
- *   alpha <- alpha / 10 after an inner success, x 5 (at least proximal_restart) after a failure
+ *   c <- r and alpha <- alpha / 10 once the inner error is a tenth of the proximal perturbation |alpha D (r - c)|, or
+ *   when a step makes the error ten times smaller; alpha x 5 (at least proximal_restart) and back to c after a failure
  * alpha [-] is relative to the Delassus entries. With rigid bodies A W + B is singular as a rule (Cadoux (2009),
  * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
  * near it: near zero for a cold start, near the last step's impulses for a warm one. Contacts predicted open are
@@ -17,7 +18,8 @@
  * The contact function is an argument: Alart-Curnier (ac_newton) here, others are one ContactMap each.
  * Source: Alart, Curnier (1991); Cadoux (2009), 4.2, 4.3, appendix D; Acary, Bremond, Huber (2018), section on the
  * proximal point algorithm, for the rule on alpha. Departure: inexact inner solves, stopped when the inner error is
- * below a tenth of the proximal perturbation.
+ * below a tenth of the proximal perturbation or the error of the problem itself falls tenfold; a small alpha's effect
+ * on a step from the centre is taken out again by one step of iterated Tikhonov regularisation.
  */
 #include <Eigen/Core>
 #include <memory>
@@ -72,7 +74,6 @@ protected:
 private:
   enum class Inner
   {
-    SUCCESS,
     CONVERGED,
     FAILED,
     OUT_OF_BUDGET
@@ -84,8 +85,13 @@ private:
   void reducedRows(const DelassusProblem& problem, int i, Sink sink);
   template <typename Sink>
   void assemble(const DelassusProblem& problem, Sink sink);
-  bool solveDense(const DelassusProblem& problem);
-  bool solveSparse(const DelassusProblem& problem);
+  bool isSparse(const DelassusProblem& problem) const;
+  bool factorDense(const DelassusProblem& problem);
+  bool factorSparse(const DelassusProblem& problem);
+  void substitute(const DelassusProblem& problem);
+  void refine(const DelassusProblem& problem);
+  void moveCentre(const Eigen::VectorXd& r);
+  double evaluateProximal(const DelassusProblem& problem, const Eigen::VectorXd& r);
   Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
   double lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r);
   void keepBest(double value, const Eigen::VectorXd& r);
@@ -104,6 +110,7 @@ private:
   std::vector<int> position_;  ///< row -> active row or -1
   Eigen::VectorXd rhs_;
   DenseLu lu_;
+  double perturbation_ = 0.0;  ///< |alpha D (r - c)|^2
   double best_value_ = 0.0;
   double history_[8] = {};
   int history_count_ = 0;

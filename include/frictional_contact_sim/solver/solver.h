@@ -118,6 +118,8 @@ protected:
    */
   virtual bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
   bool timeIsUp() const;
+  /** @brief True when solve() was called without a guess. */
+  bool coldStart() const { return cold_start_; }
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
    * and the final judgement of solve(): for methods made of methods.
@@ -148,6 +150,7 @@ private:
   std::chrono::steady_clock::time_point start_;
   double deadline_ = 0.0;  ///< seconds after start_ when time is up, 0 = never
   Eigen::VectorXd step_lengths_;
+  bool cold_start_ = true;  ///< no guess was given: the method's own start serves the whole and each island
   double free_velocity_ = 0.0;
   double criterion_ = 0.0;  ///< stopping criterion of the last answer
   GlobalResidualData global_;
