@@ -44,6 +44,7 @@ void PortfolioOptions::validate() const
 {
   require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
   require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
+  require(newton_try_steps >= 1, "newton_try_steps", newton_try_steps, 1);
   require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
   require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
   require(newton_steps >= 1, "newton_steps", newton_steps, 1);
@@ -191,6 +192,19 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
   return true;
 }
 
+/** Newton from the start. Without restarts it ends at its first failure. */
+bool Portfolio::tryNewton(const DelassusProblem& problem, int steps, bool restarts, SolverResult& result)
+{
+  SemismoothNewtonOptions options;
+  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
+  // round.
+  options.watchdog_min = WATCHDOG_MIN;
+  if (!restarts)
+    options.proximal_max = options.proximal_start;
+  newton_->setOptions(options);
+  return run(*newton_, problem, steps, result, coldStart() ? 1.0 : SERIES_MARGIN);
+}
+
 void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
@@ -199,18 +213,16 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
-  SemismoothNewtonOptions options;
-  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
-  // round.
-  options.watchdog_min = newton_first ? WATCHDOG_MIN : 0.0;
-  newton_->setOptions(options);
-  if (!done)
-    done = newton_first ? run(*newton_, problem, options_.newton_first_steps, result, coldStart() ? 1.0 : SERIES_MARGIN)
-                        : run(*gauss_seidel_, problem, options_.first_sweeps, result);
-  if (!newton_first && newton)
-    done = done || run(*newton_, problem, options_.newton_steps, result);
-  options.watchdog_min = 0.0;
-  newton_->setOptions(options);
+  if (!done && problem.W.rows() <= std::max(options_.newton_first_rows, options_.newton_try_rows))
+    done = tryNewton(problem, newton_first ? options_.newton_first_steps : options_.newton_try_steps, newton_first,
+                     result);
+  newton_->setOptions({});
+  if (!newton_first)
+  {
+    done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
+    if (newton)
+      done = done || run(*newton_, problem, options_.newton_steps, result);
+  }
   for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
   {
     done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result);

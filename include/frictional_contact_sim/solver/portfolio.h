@@ -5,6 +5,7 @@
  *
  *   0  the guess is already good, or, from a cold start, every law solved apart is: no iteration at all
  *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
+ *      some more rows: the same for a few steps, given up at the first that fails
  *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
  *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of all Newtons
@@ -30,6 +31,8 @@ struct PortfolioOptions
 {
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
+  int newton_try_rows = 330;  ///< up to this many rows it goes first too, but for newton_try_steps at most
+  int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
   int newton_last_rows = 6000;  ///< above, nothing is factored: memory and time grow faster than the problem
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
@@ -61,6 +64,7 @@ protected:
 private:
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
+  bool tryNewton(const DelassusProblem& problem, int steps, bool restarts, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
