@@ -11,6 +11,7 @@
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/one_contact.h"
+#include "frictional_contact_sim/solver/swept_newton.h"
 
 namespace frictional_contact_sim
 {
@@ -47,6 +48,9 @@ void PortfolioOptions::validate() const
   require(newton_try_steps >= 1, "newton_try_steps", newton_try_steps, 1);
   require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
   require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
+  require(swept_first_rows >= 0, "swept_first_rows", swept_first_rows, 0);
+  require(swept_last_rows >= swept_first_rows, "swept_last_rows", swept_last_rows, swept_first_rows);
+  require(swept_steps >= 1, "swept_steps", swept_steps, 1);
   require(newton_steps >= 1, "newton_steps", newton_steps, 1);
   require(later_sweeps >= 1, "later_sweeps", later_sweeps, 1);
   require(max_rounds >= 0, "max_rounds", max_rounds, 0);
@@ -57,6 +61,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , options_(options)
   , gauss_seidel_(std::make_unique<GaussSeidel>())
   , newton_(std::make_unique<AcNewton>())
+  , swept_newton_(std::make_unique<SweptNewton>())
 {
   options_.validate();
   GaussSeidelOptions sweeps;
@@ -213,6 +218,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
+  const bool swept = !newton_first && problem.W.rows() <= options_.swept_last_rows;
   if (!done && problem.W.rows() <= std::max(options_.newton_first_rows, options_.newton_try_rows))
     done = tryNewton(problem, newton_first ? options_.newton_first_steps : options_.newton_try_steps, newton_first,
                      result);
@@ -220,6 +226,8 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   if (!newton_first)
   {
     done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
+    if (newton && problem.W.rows() >= options_.swept_first_rows)
+      done = done || run(*swept_newton_, problem, options_.swept_steps, result);
     if (newton)
       done = done || run(*newton_, problem, options_.newton_steps, result);
   }
@@ -230,6 +238,8 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
       done = done || run(*newton_, problem, options_.newton_steps << round, result);
     for (std::unique_ptr<Solver>& method : newton ? last_resort_ : without_factors_)
       done = done || run(*method, problem, options_.newton_steps << round, result);
+    if (swept)
+      done = done || run(*swept_newton_, problem, options_.swept_steps << round, result);
   }
   result.solution.r = best_r_;
   if (done)

@@ -3,6 +3,7 @@
  * @brief The linear system of a Newton step: inactive laws eliminated, the rest factored dense or sparse.
  */
 #include <Eigen/SparseLU>
+#include <Eigen/UmfPackSupport>
 #include <algorithm>
 #include <numeric>
 
@@ -14,6 +15,10 @@ namespace
 {
 /// A diagonal entry of at least this share of the largest in its column is taken as the pivot: less fill.
 constexpr double PIVOT_THRESHOLD = 0.1;
+/// UMFPACK above this many rows: three to fifteen times quicker on packings; below, its analysis does not pay.
+constexpr int MULTIFRONTAL_ROWS = 1800;
+/// Nested dissection (METIS) above this many rows: it costs three times as much as minimum degree and halves the fill.
+constexpr int DISSECTION_ROWS = 5000;
 /// Largest alpha whose effect on the step is taken out again: larger ones are there to shorten the step.
 constexpr double REFINE_MAX = 1e-5;
 }  // namespace
@@ -26,6 +31,9 @@ struct SemismoothNewton::Sparse
   std::vector<int> next;  ///< per column, where its next entry goes
   std::vector<int> columns, rows;  ///< pattern of the last analysis
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
+  Eigen::UmfPackLU<Matrix> multifrontal;
+
+  bool isLarge() const { return matrix.cols() > MULTIFRONTAL_ROWS; }
 
   void countColumns(const DelassusProblem& problem, const std::vector<int>& position, int size);
   void analyse();
@@ -62,8 +70,18 @@ void SemismoothNewton::Sparse::analyse()
     return;
   columns.assign(outer, outer_end);
   rows.assign(inner, inner_end);
-  lu.setPivotThreshold(PIVOT_THRESHOLD);
-  lu.analyzePattern(matrix);
+  if (!isLarge())
+  {
+    lu.setPivotThreshold(PIVOT_THRESHOLD);
+    lu.analyzePattern(matrix);
+    return;
+  }
+  // The pattern is symmetric and the diagonal strong: an ordering of A + A', pivots from the diagonal where possible.
+  auto& control = multifrontal.umfpackControl();
+  control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  control[UMFPACK_ORDERING] = matrix.cols() > DISSECTION_ROWS ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD;
+  control[UMFPACK_IRSTEP] = 0.0;
+  multifrontal.analyzePattern(matrix);
 }
 
 // Where Sparse is complete.
@@ -222,6 +240,11 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
              }
            });
   sparse_->analyse();
+  if (sparse_->isLarge())
+  {
+    sparse_->multifrontal.factorize(sparse_->matrix);
+    return sparse_->multifrontal.info() == Eigen::Success;
+  }
   sparse_->lu.factorize(sparse_->matrix);
   return sparse_->lu.info() == Eigen::Success;
 }
@@ -230,7 +253,9 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
 void SemismoothNewton::substitute(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
-  if (isSparse(problem))
+  if (isSparse(problem) && sparse_->isLarge())
+    rhs_.head(size) = sparse_->multifrontal.solve(rhs_.head(size));
+  else if (isSparse(problem))
     rhs_.head(size) = sparse_->lu.solve(rhs_.head(size));
   else
     lu_.solve(rhs_.head(size));

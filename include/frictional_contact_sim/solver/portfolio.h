@@ -7,9 +7,12 @@
  *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
  *      some more rows: the same for a few steps, given up at the first that fails
  *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
+ *      from swept_first_rows to newton_last_rows between the two: Newton steps each followed by sweeps
+ *      (solver/swept_newton.h)
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
- *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of all Newtons
- *      Haslinger's fixed point, which needs products with W only
+ *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of these Newtons
+ *      Haslinger's fixed point, which needs products with W only; on more than few rows a round ends with Newton with
+ *      sweeps, above swept_last_rows nothing is factored
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
@@ -26,6 +29,7 @@ namespace frictional_contact_sim
 {
 class GaussSeidel;
 class AcNewton;
+class SweptNewton;
 
 struct PortfolioOptions
 {
@@ -33,7 +37,10 @@ struct PortfolioOptions
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
   int newton_try_rows = 330;  ///< up to this many rows it goes first too, but for newton_try_steps at most
   int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
-  int newton_last_rows = 6000;  ///< above, nothing is factored: memory and time grow faster than the problem
+  int newton_last_rows = 6000;  ///< above, Newton alone takes too many factorizations
+  int swept_first_rows = 2500;  ///< from here on Newton with sweeps goes before Newton alone, >= 0
+  int swept_last_rows = 60000;  ///< above, nothing is factored: memory and time grow faster than the problem
+  int swept_steps = 15;  ///< budget of Newton with sweeps on larger problems, doubled every round, >= 1
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
@@ -70,6 +77,7 @@ private:
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_;
+  std::unique_ptr<SweptNewton> swept_newton_;
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
   Eigen::VectorXd velocity_, best_r_;

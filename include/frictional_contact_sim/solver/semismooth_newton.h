@@ -71,6 +71,15 @@ protected:
   std::unique_ptr<Solver> sibling() const override;
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
+  // For methods that go another way along the same step (solver/swept_newton.h).
+  void prepare(const DelassusProblem& problem);
+  /** @brief Phi at (u, r), its Jacobians when asked for. @return |Phi/rho|^2 [m^2/s^2] */
+  double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
+  /** @brief step_ from the last evaluation with Jacobians and alpha_. @return false when there is none */
+  bool direction(const DelassusProblem& problem);
+  double alpha_ = 0.0;
+  Eigen::VectorXd u_, step_, best_r_;
+
 private:
   enum class Inner
   {
@@ -78,9 +87,6 @@ private:
     FAILED,
     OUT_OF_BUDGET
   };
-  void prepare(const DelassusProblem& problem);
-  double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
-  bool direction(const DelassusProblem& problem);
   template <int D, typename Sink>
   void reducedRows(const DelassusProblem& problem, int i, Sink sink);
   template <typename Sink>
@@ -103,8 +109,7 @@ private:
 
   Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law
   Eigen::VectorXd weight_;  ///< 1/rho_i a row: D, and what makes the merit a velocity
-  double alpha_ = 0.0;
-  Eigen::VectorXd centre_, u_, u_alpha_, f_, step_, step_velocity_, trial_r_, trial_u_, best_r_;
+  Eigen::VectorXd centre_, u_alpha_, f_, step_velocity_, trial_r_, trial_u_;
   std::vector<double> by_u_, by_r_;  ///< A_i and B_i, 9 numbers a law, row-major
   std::vector<int> active_;  ///< active row -> row
   std::vector<int> position_;  ///< row -> active row or -1

@@ -1,0 +1,83 @@
+/**
+ * @file swept_newton_test.cpp
+ * @brief Newton steps followed by sweeps, on packings of balls.
+ */
+#include "frictional_contact_sim/solver/swept_newton.h"
+
+#include <gtest/gtest.h>
+
+#include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/problem/rigid_families.h"
+#include "frictional_contact_sim/solver/ac_newton.h"
+#include "frictional_contact_sim/solver/portfolio.h"
+
+using namespace frictional_contact_sim;
+
+namespace
+{
+DelassusProblem packing(int contacts, std::uint64_t seed)
+{
+  RigidFamilyOptions options;
+  options.seed = seed;
+  return reduce(granularProblem(contacts, 0, options));
+}
+
+StoppingOptions steps(int count)
+{
+  StoppingOptions stopping;
+  stopping.tolerance = 1e-8;
+  stopping.max_iterations = count;
+  return stopping;
+}
+}  // namespace
+
+TEST(SweptNewtonTest, APackingTakesFewerFactorizationsThanTheLineSearch)
+{
+  // Measured: 5 to 30 steps with sweeps, more than 80 with the line search, on 3 seeds.
+  const DelassusProblem problem = packing(1000, 2);
+  SweptNewton swept;
+  swept.setStopping(steps(60));
+  AcNewton plain;
+  plain.setStopping(steps(60));
+  EXPECT_EQ(swept.solve(problem).status, SolverStatus::CONVERGED);
+  EXPECT_NE(plain.solve(problem).status, SolverStatus::CONVERGED);
+}
+
+TEST(SweptNewtonTest, ReturnsTheBestIterateWhenStepsEnd)
+{
+  const DelassusProblem problem = packing(300, 1);
+  SweptNewton swept;
+  double last = 1.0;
+  for (const int count : {0, 1, 2, 4, 8})
+  {
+    swept.setStopping(steps(count));
+    const SolverResult result = swept.solve(problem);
+    EXPECT_LE(result.iterations, count);
+    // More steps repeat the same way and go on: the best of them can only be better.
+    EXPECT_LE(result.residual, last);
+    last = result.residual;
+  }
+}
+
+TEST(SweptNewtonTest, OptionsNameTheFieldAndItsValue)
+{
+  SweptNewtonOptions options;
+  options.sweeps = 0;
+  EXPECT_THROW(SweptNewton{options}, std::invalid_argument);
+  options = {};
+  options.worst = 0.5;
+  EXPECT_THROW(SweptNewton{options}, std::invalid_argument);
+}
+
+TEST(PortfolioTest, PackingsOfThousandContactsTakeAtMostTwoHundredIterations)
+{
+  // Sweeps and Newton steps together; Newton alone after the same sweeps takes 550 and more on the second.
+  for (const std::uint64_t seed : {1, 2, 3})
+  {
+    Portfolio portfolio;
+    portfolio.setStopping(steps(200));
+    const SolverResult result = portfolio.solve(packing(1000, seed));
+    EXPECT_EQ(result.status, SolverStatus::CONVERGED) << "seed " << seed << ": " << result.message;
+    EXPECT_LE(result.residual, 1e-8) << "seed " << seed;
+  }
+}
