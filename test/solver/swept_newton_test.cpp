@@ -33,7 +33,7 @@ StoppingOptions steps(int count)
 
 TEST(SweptNewtonTest, APackingTakesFewerFactorizationsThanTheLineSearch)
 {
-  // Measured: 5 to 30 steps with sweeps, more than 80 with the line search, on 3 seeds.
+  // In the portfolio, on 3 seeds: 6 to 11 steps with sweeps, 84 and more with the line search.
   const DelassusProblem problem = packing(1000, 2);
   SweptNewton swept;
   swept.setStopping(steps(60));
@@ -71,7 +71,7 @@ TEST(SweptNewtonTest, OptionsNameTheFieldAndItsValue)
 
 TEST(PortfolioTest, PackingsOfThousandContactsTakeAtMostTwoHundredIterations)
 {
-  // Sweeps and Newton steps together; Newton alone after the same sweeps takes 550 and more on the second.
+  // Sweeps and Newton steps together: 66 to 71; without Newton with sweeps the second was unsolved after 549.
   for (const std::uint64_t seed : {1, 2, 3})
   {
     Portfolio portfolio;
