@@ -13,6 +13,7 @@ void HaslingerOptions::validate() const
 {
   requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "haslinger.inner_accuracy", inner_accuracy, "in (0, 1)");
   requireOption(relaxation > 0.0 && relaxation <= 1.0, "haslinger.relaxation", relaxation, "in (0, 1]");
+  requireOption(slowest > 0.0, "haslinger.slowest", slowest, "> 0");
   requireOption(stall_window >= 2, "haslinger.stall_window", stall_window, ">= 2");
 }
 
@@ -49,7 +50,8 @@ void Haslinger::doSolve(const DelassusProblem& problem, SolverResult& result)
   problem.W.apply(r_, u_);
   u_ += problem.q;
   OuterLoop loop(stopping().tolerance, result, options_.stall_window);
-  if (loop.record(residual(problem, u_, r_), r_))
+  double value = residual(problem, u_, r_);
+  if (loop.record(value, r_))
     return;
   ConvexBudget budget;
   budget.interrupted = [this] { return timeIsUp(); };
@@ -59,8 +61,15 @@ void Haslinger::doSolve(const DelassusProblem& problem, SolverResult& result)
                        velocityScale(problem.q, u_, r_, stepLengths(), problem.W);
     inner_->solve(convex_, budget, r_, u_);
     ++result.iterations;
-    if (loop.record(residual(problem, u_, r_), r_))
+    const double before = value;
+    value = residual(problem, u_, r_);
+    if (loop.record(value, r_))
       return;
+    if (value > options_.slowest * before)
+    {
+      loop.stop(SolverStatus::STAGNATED, "the residual falls too slowly");
+      return;
+    }
     updateThresholds(problem, options_.relaxation);
   }
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "frictional_contact_sim/solver/ac_newton.h"
+#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
 #include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
@@ -26,6 +27,22 @@ constexpr double WATCHDOG_MIN = 1e-5;
 /// it at once.
 constexpr double SERIES_MARGIN = 1e-4;
 
+/// Haslinger's first turn ends with an outer iteration that leaves more than this share of the residual...
+constexpr double HASLINGER_SLOWEST = 0.2;
+/// ... or whose convex problem takes more steps than this.
+constexpr int HASLINGER_INNER_STEPS = 100;
+/// What a first turn reached is a better start for the others when it is below this share of the residual before it.
+constexpr double WORTH_KEEPING = 1e-3;
+
+std::unique_ptr<Haslinger> quickHaslinger()
+{
+  HaslingerOptions options;
+  options.slowest = HASLINGER_SLOWEST;
+  SpectralGradientOptions inner;
+  inner.max_iterations = HASLINGER_INNER_STEPS;
+  return std::make_unique<Haslinger>(options, std::make_unique<SpectralGradient>(inner));
+}
+
 void require(bool condition, const char* name, int value, int least)
 {
   if (!condition)
@@ -45,6 +62,7 @@ void PortfolioOptions::validate() const
 {
   require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
   require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
+  require(haslinger_steps >= 1, "haslinger_steps", haslinger_steps, 1);
   require(newton_try_steps >= 1, "newton_try_steps", newton_try_steps, 1);
   require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
   require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
@@ -61,6 +79,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , options_(options)
   , gauss_seidel_(std::make_unique<GaussSeidel>())
   , newton_(std::make_unique<AcNewton>())
+  , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
 {
   options_.validate();
@@ -210,6 +229,17 @@ bool Portfolio::tryNewton(const DelassusProblem& problem, int steps, bool restar
   return run(*newton_, problem, steps, result, coldStart() ? 1.0 : SERIES_MARGIN);
 }
 
+/** Haslinger's fixed point, given up when it is slow: then the others start as if it had not been. */
+bool Portfolio::tryHaslinger(const DelassusProblem& problem, SolverResult& result)
+{
+  const double value = best_value_;
+  first_r_ = result.solution.r;
+  const bool done = run(*haslinger_, problem, options_.haslinger_steps, result);
+  if (best_value_ > WORTH_KEEPING * value)
+    result.solution.r = first_r_;
+  return done;
+}
+
 void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
@@ -225,6 +255,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   newton_->setOptions({});
   if (!newton_first)
   {
+    done = done || tryHaslinger(problem, result);
     done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
     if (newton && problem.W.rows() >= options_.swept_first_rows)
       done = done || run(*swept_newton_, problem, options_.swept_steps, result);

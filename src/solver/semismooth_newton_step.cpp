@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "frictional_contact_sim/math/blas_threads.h"
 #include "frictional_contact_sim/solver/semismooth_newton.h"
 
 namespace frictional_contact_sim
@@ -242,6 +243,7 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
   sparse_->analyse();
   if (sparse_->isLarge())
   {
+    const OneBlasThread one_thread;
     sparse_->multifrontal.factorize(sparse_->matrix);
     return sparse_->multifrontal.info() == Eigen::Success;
   }

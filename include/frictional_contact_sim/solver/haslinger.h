@@ -11,6 +11,8 @@
  *
  * Source: Haslinger (1983); Cadoux (2009), 4.6, (4.17). Departure: the inner tolerance follows the outer error.
  */
+#include <limits>
+
 #include "frictional_contact_sim/solver/convex/convex_solver.h"
 #include "frictional_contact_sim/solver/solver.h"
 
@@ -20,6 +22,8 @@ struct HaslingerOptions
 {
   double inner_accuracy = 0.1;  ///< inner tolerance relative to the outer error [-], in (0, 1)
   double relaxation = 1.0;  ///< s <- s + relaxation (mu r_N - s) [-], in (0, 1]
+  /// an outer iteration that leaves more than this share of the residual ends the run [-], > 0; by default none does
+  double slowest = std::numeric_limits<double>::infinity();
   int stall_window = 100;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
 
   /** @throws std::invalid_argument naming the field and its value. */

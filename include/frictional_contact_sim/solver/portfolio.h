@@ -4,11 +4,12 @@
  * @brief Methods in turn, the best iterate kept: the default of the package.
  *
  *   0  the guess is already good, or, from a cold start, every law solved apart is: no iteration at all
- *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem)
- *      some more rows: the same for a few steps, given up at the first that fails
- *      many rows: Gauss-Seidel sweeps with a stall detector, then proximal Newton from where they ended
- *      from swept_first_rows to newton_last_rows between the two: Newton steps each followed by sweeps
- *      (solver/swept_newton.h)
+ *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem);
+ *      some more rows: the same for a few steps, given up at the first that fails;
+ *      many rows: Haslinger's fixed point as long as every iteration takes four fifths of the residual, as it does
+ *      where nearly everything sticks (a tower at rest), then Gauss-Seidel sweeps with a stall detector, then proximal
+ *      Newton from where they ended; from swept_first_rows to newton_last_rows Newton steps each followed by sweeps
+ *      (solver/swept_newton.h) between the two
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
  *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of these Newtons
  *      Haslinger's fixed point, which needs products with W only; on more than few rows a round ends with Newton with
@@ -29,6 +30,7 @@ namespace frictional_contact_sim
 {
 class GaussSeidel;
 class AcNewton;
+class Haslinger;
 class SweptNewton;
 
 struct PortfolioOptions
@@ -37,6 +39,7 @@ struct PortfolioOptions
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
   int newton_try_rows = 330;  ///< up to this many rows it goes first too, but for newton_try_steps at most
   int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
+  int haslinger_steps = 10;  ///< outer iterations of Haslinger's fixed point on more rows, as long as it is quick, >= 1
   int newton_last_rows = 6000;  ///< above, Newton alone takes too many factorizations
   int swept_first_rows = 2500;  ///< from here on Newton with sweeps goes before Newton alone, >= 0
   int swept_last_rows = 60000;  ///< above, nothing is factored: memory and time grow faster than the problem
@@ -72,15 +75,17 @@ private:
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
   bool tryNewton(const DelassusProblem& problem, int steps, bool restarts, SolverResult& result);
+  bool tryHaslinger(const DelassusProblem& problem, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_;
+  std::unique_ptr<Haslinger> haslinger_;  ///< gives up when it is slow
   std::unique_ptr<SweptNewton> swept_newton_;
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
-  Eigen::VectorXd velocity_, best_r_;
+  Eigen::VectorXd velocity_, best_r_, first_r_;
   double best_value_ = 0.0;
   int used_ = 0;
 };
