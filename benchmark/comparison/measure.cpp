@@ -69,6 +69,15 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
   {
     const Target& target = options.targets[t];
     Finding& finding = findings[t];
+    const bool other_criterion = t > 0 && target.criterion != options.targets[t - 1].criterion;
+    if (other_criterion)
+      tolerance = 1.0;
+    // What misses the loose target misses the tight one of the same criterion.
+    else if (t > 0 && !findings[t - 1].solved)
+    {
+      finding = findings[t - 1];
+      continue;
+    }
     bool claimed = true;
     for (tolerance = std::min(tolerance, firstTolerance(target, entry.ours)); claimed && tolerance > TIGHTEST;
          tolerance *= 0.1)
@@ -88,12 +97,6 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
     for (int k = 0; finding.solved && k < RETRIES && finding.seconds < QUICK; ++k)
       finding.seconds =
           std::min(finding.seconds, timeSolves(*contestant, finding.tolerance, repeats, time_limit, claimed));
-    if (!finding.solved)
-    {
-      for (std::size_t later = t + 1; later < options.targets.size(); ++later)
-        findings[later] = finding;
-      return;  // what misses the loose target misses the tight one
-    }
   }
 }
 

@@ -11,6 +11,8 @@ namespace
 {
 /// From this share of its entries on J' J is factored dense.
 constexpr double DENSE_NORMAL = 0.1;
+/// But not above so many rows: three such matrices are kept.
+constexpr int DENSE_NORMAL_ROWS = 4000;
 
 template <int D>
 double store(const ContactFunction<D>& f, bool jacobians, double* value, double* by_c, double* by_z)
@@ -164,7 +166,8 @@ void FbSteps::makeNormal(const FbSystem& system)
   sparse_->normal = Sparse::Matrix(sparse_->jacobian.transpose()) * sparse_->jacobian;
   gradient_ = sparse_->jacobian.transpose() * system.value();
   // J' J has the pattern of W^2, its factor more.
-  dense_normal_ = static_cast<double>(sparse_->normal.nonZeros()) > DENSE_NORMAL * rows * rows;
+  dense_normal_ =
+      rows <= DENSE_NORMAL_ROWS && static_cast<double>(sparse_->normal.nonZeros()) > DENSE_NORMAL * rows * rows;
   if (dense_normal_)
     normal_ = sparse_->normal;
 }

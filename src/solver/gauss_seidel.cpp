@@ -13,6 +13,8 @@ namespace
 {
 /// The residual is worth a look when the largest change of a sweep, as a velocity, is below this multiple of tolerance.
 constexpr double LIKELY = 2.0;
+/// Above so many rows the clock is asked after every sweep, not only with the residual.
+constexpr int LONG_SWEEP_ROWS = 300;
 
 template <int D>
 double updateContact(const DelassusProblem& problem, int i, double relaxation, Eigen::VectorXd& r, double& scale)
@@ -125,7 +127,8 @@ void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
     }
     const double change = last ? 0.0 : sweep(problem, r);
     result.iterations = last ? k : k + 1;
-    if (!last && change > LIKELY * tolerance && (k + 1) % options_.check_interval != 0)
+    const bool check = last || change <= LIKELY * tolerance || (k + 1) % options_.check_interval == 0;
+    if (!check && !(problem.W.rows() > LONG_SWEEP_ROWS && timeIsUp()))
       continue;
     problem.W.apply(r, velocity_);
     velocity_ += problem.q;

@@ -22,9 +22,9 @@ namespace
 constexpr int STALL_WINDOW = 20;
 /// Above Newton's first proximal parameter, below its restart.
 constexpr double WATCHDOG_MIN = 1e-5;
-/// With a guess a problem is one of a series, as a rule. Newton on a small one then aims this far below the tolerance:
-/// its last step costs little, and a scene at rest stays within the tolerance for many steps instead of drifting out of
-/// it at once.
+/// With a guess a problem is one of a series, as a rule. Newton on a small one then takes one more step unless it is
+/// this far below the tolerance: that costs little, and a scene at rest stays within the tolerance for many steps
+/// instead of drifting out of it at once.
 constexpr double SERIES_MARGIN = 1e-4;
 
 /// Haslinger's first turn ends with an outer iteration that leaves more than this share of the residual...
@@ -63,6 +63,7 @@ void PortfolioOptions::validate() const
   require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
   require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
   require(haslinger_steps >= 1, "haslinger_steps", haslinger_steps, 1);
+  require(newton_try_rows >= 0, "newton_try_rows", newton_try_rows, 0);
   require(newton_try_steps >= 1, "newton_try_steps", newton_try_steps, 1);
   require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
   require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
@@ -223,10 +224,12 @@ bool Portfolio::tryNewton(const DelassusProblem& problem, int steps, bool restar
   // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
   // round.
   options.watchdog_min = WATCHDOG_MIN;
-  if (!restarts)
-    options.proximal_max = options.proximal_start;
+  options.restarts = restarts;
   newton_->setOptions(options);
-  return run(*newton_, problem, steps, result, coldStart() ? 1.0 : SERIES_MARGIN);
+  const bool done = run(*newton_, problem, steps, result);
+  if (done && !coldStart() && best_value_ > SERIES_MARGIN * stopping().tolerance)
+    run(*newton_, problem, 1, result, SERIES_MARGIN);
+  return done;
 }
 
 /** Haslinger's fixed point, given up when it is slow: then the others start as if it had not been. */

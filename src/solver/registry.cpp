@@ -67,7 +67,7 @@ const std::vector<SolverEntry>& solverRegistry()
        "Haslinger (1983); Cadoux (2009), 4.6, (4.17)", OperatorUse::PRODUCTS},
       {"cadoux_fixed_point", &create<CadouxFixedPoint>, "fixed point on the slip speeds, convex problem over the cones",
        "Cadoux (2009), 4.7, (3.13), (3.24)", OperatorUse::PRODUCTS},
-      {"cadoux_newton", &create<CadouxNewton>, "Newton on F(s) = s by the linearised KKT system, least squares",
+      {"cadoux_newton", &create<CadouxNewton>, "Newton on F(s) = s by the linearised KKT system, proximal term",
        "Cadoux (2009), 4.7.5, (4.28)", OperatorUse::BLOCK_ROWS},
       {"cadoux_broyden", &create<CadouxBroyden>, "Broyden's quasi-Newton method on F(s) = s",
        "Broyden (1965); Cadoux (2009), 4.7, table 5.5", OperatorUse::PRODUCTS},

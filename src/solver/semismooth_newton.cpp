@@ -47,6 +47,7 @@ void SemismoothNewtonOptions::validate() const
   require(proximal_min > 0.0, "proximal_min", proximal_min, "> 0");
   require(proximal_max >= proximal_start, "proximal_max", proximal_max, ">= proximal_start");
   require(proximal_restart > 0.0, "proximal_restart", proximal_restart, "> 0");
+  require(proximal_restart <= proximal_max, "proximal_restart", proximal_restart, "<= proximal_max");
   require(proximal_decrease > 0.0 && proximal_decrease < 1.0, "proximal_decrease", proximal_decrease, "in (0, 1)");
   require(proximal_increase > 1.0, "proximal_increase", proximal_increase, "> 1");
   require(inner_iterations >= 1, "inner_iterations", inner_iterations, ">= 1");
@@ -196,6 +197,8 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
     keepBest(value, r);
     if (value <= stopping().tolerance)
       return Inner::CONVERGED;
+    // The count of steps and the merits go on: it is the same excursion (starting both anew took 5 % more steps on 112
+    // problems).
     if (value <= MOVE_SHARE * last_value)
       moveCentre(r);
     last_value = value;
@@ -248,7 +251,7 @@ void SemismoothNewton::doSolve(const DelassusProblem& problem, SolverResult& res
       result.message = time ? "time limit reached" : "Newton iterations exhausted";
       break;
     }
-    if (alpha_ >= options_.proximal_max)
+    if (!options_.restarts || alpha_ >= options_.proximal_max)
       break;
     alpha_ = std::clamp(options_.proximal_increase * alpha_, options_.proximal_restart, options_.proximal_max);
     r = centre_;

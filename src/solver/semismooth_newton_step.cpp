@@ -33,6 +33,7 @@ struct SemismoothNewton::Sparse
   std::vector<int> columns, rows;  ///< pattern of the last analysis
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
   Eigen::UmfPackLU<Matrix> multifrontal;
+  Eigen::VectorXd right;
 
   bool isLarge() const { return matrix.cols() > MULTIFRONTAL_ROWS; }
 
@@ -256,7 +257,11 @@ void SemismoothNewton::substitute(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
   if (isSparse(problem) && sparse_->isLarge())
-    rhs_.head(size) = sparse_->multifrontal.solve(rhs_.head(size));
+  {
+    // UMFPACK does not solve in place.
+    sparse_->right = rhs_.head(size);
+    rhs_.head(size) = sparse_->multifrontal.solve(sparse_->right);
+  }
   else if (isSparse(problem))
     rhs_.head(size) = sparse_->lu.solve(rhs_.head(size));
   else

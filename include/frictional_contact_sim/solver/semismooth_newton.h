@@ -47,7 +47,8 @@ struct SemismoothNewtonOptions
   double proximal_restart = 1e-3;  ///< smallest alpha after a failure [-]
   double proximal_decrease = 0.1;  ///< factor after a success [-], in (0, 1)
   double proximal_increase = 5.0;  ///< factor after a failure [-], > 1
-  int inner_iterations = 20;  ///< Newton steps a centre, >= 1
+  bool restarts = true;  ///< false = the first failure ends the run
+  int inner_iterations = 20;  ///< Newton steps without the inner error falling below the perturbation, >= 1
   double watchdog_min = 0.0;  ///< smallest alpha at which a step without decrease is taken whole [-], >= 0
   int line_search_steps = 8;  ///< halvings of t, >= 0
   int line_search_memory = 4;  ///< merit values the new one is compared with, in [1, 8]

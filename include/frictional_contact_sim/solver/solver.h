@@ -118,7 +118,7 @@ protected:
    */
   virtual bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
   bool timeIsUp() const;
-  /** @brief True when solve() was called without a guess. */
+  /** @brief True when there is no guess; refinements of a global solve have one, whoever called it. */
   bool coldStart() const { return cold_start_; }
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
