@@ -37,7 +37,7 @@ ROS = {"ros", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "nav_msgs"
        "tf2_msgs", "trajectory_msgs", "diagnostic_msgs", "xmlrpcpp", "XmlRpcValue.h", "XmlRpcClient.h", "XmlRpc.h",
        "rosbag", "topic_tools", "diagnostic_updater", "tf2_ros", "tf2", "boost"}  # boost: only where roscpp hands it out
 TOOL_HEADERS = {"CLI", "nlohmann", "nlohmann_json"}
-POSIX = {"unistd.h", "sys", "fcntl.h", "signal.h", "cxxabi.h"}
+POSIX = {"unistd.h", "sys", "fcntl.h", "signal.h", "cxxabi.h", "dlfcn.h"}
 TEST_HEADERS = {"gtest", "gmock", "benchmark", "support"}
 EVERYWHERE = {"Eigen"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(<|")([^>"]+)[>"]')
