@@ -260,7 +260,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   {
     done = done || tryHaslinger(problem, result);
     done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
-    if (newton && problem.W.rows() >= options_.swept_first_rows)
+    if (swept && problem.W.rows() >= options_.swept_first_rows)
       done = done || run(*swept_newton_, problem, options_.swept_steps, result);
     if (newton)
       done = done || run(*newton_, problem, options_.newton_steps, result);
@@ -270,9 +270,11 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
     done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result);
     if (newton)
       done = done || run(*newton_, problem, options_.newton_steps << round, result);
+    if (swept && !newton)
+      done = done || run(*swept_newton_, problem, options_.swept_steps << round, result);
     for (std::unique_ptr<Solver>& method : newton ? last_resort_ : without_factors_)
       done = done || run(*method, problem, options_.newton_steps << round, result);
-    if (swept)
+    if (swept && newton)
       done = done || run(*swept_newton_, problem, options_.swept_steps << round, result);
   }
   result.solution.r = best_r_;

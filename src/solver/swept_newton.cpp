@@ -11,9 +11,12 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double STEP_LENGTHS[] = {1.0, 0.3, 0.1, 0.03};
+/// The first m is the number of laws by this.
+constexpr int LAWS_A_SWEEP = 10;
 constexpr double ALPHA_DECREASE = 0.3;
 constexpr double ALPHA_INCREASE = 5.0;
+constexpr double SWEEPS_DECREASE = 0.7;
+constexpr double SWEEPS_INCREASE = 1.5;
 constexpr double ALPHA_MIN = 1e-12;
 /// Another value than last time, when all between it and the largest have failed.
 constexpr double RESTART_DECREASE = 0.1;
@@ -22,7 +25,7 @@ GaussSeidelOptions conjugateSweeps(int count)
 {
   GaussSeidelOptions options;
   options.conjugate = true;
-  options.check_interval = count;
+  options.check_interval = count;  // E only where they end
   return options;
 }
 }  // namespace
@@ -30,6 +33,8 @@ GaussSeidelOptions conjugateSweeps(int count)
 void SweptNewtonOptions::validate() const
 {
   requireOption(sweeps >= 1, "swept_newton.sweeps", sweeps, ">= 1");
+  requireOption(many_sweeps >= sweeps, "swept_newton.many_sweeps", many_sweeps, ">= sweeps");
+  requireOption(max_sweeps >= many_sweeps, "swept_newton.max_sweeps", max_sweeps, ">= many_sweeps");
   requireOption(proximal_start > 0.0, "swept_newton.proximal_start", proximal_start, "> 0");
   requireOption(proximal_max >= proximal_start, "swept_newton.proximal_max", proximal_max, ">= proximal_start");
   requireOption(proximal_restart > 0.0, "swept_newton.proximal_restart", proximal_restart, "> 0");
@@ -40,7 +45,7 @@ void SweptNewtonOptions::validate() const
 SweptNewton::SweptNewton(const SweptNewtonOptions& options)
   : SemismoothNewton("ac_newton+gauss_seidel", alartCurnierMap(RadiusRule::AUGMENTED))
   , options_(options)
-  , gauss_seidel_(conjugateSweeps(options.sweeps))
+  , gauss_seidel_(conjugateSweeps(options.max_sweeps))
 {
   options_.validate();
 }
@@ -50,41 +55,26 @@ std::unique_ptr<Solver> SweptNewton::sibling() const
   return std::make_unique<SweptNewton>(options_);
 }
 
-/** Sweeps from r + t step_. @return E where they end, swept_.solution.r */
-double SweptNewton::trial(const DelassusProblem& problem, const Eigen::VectorXd& r, double t)
+/** Sweeps from r + step_. @return E where they end, swept_.solution.r */
+double SweptNewton::sweptStep(const DelassusProblem& problem, const Eigen::VectorXd& r)
 {
-  swept_.solution.r = r + t * step_;
+  swept_.solution.r = r + step_;
   for (int i = 0; i < problem.W.blocks(); ++i)
     projectImpulse(problem.laws[static_cast<std::size_t>(i)], &swept_.solution.r[problem.W.offset(i)]);
-  delegate(gauss_seidel_, problem, stopping().tolerance, options_.sweeps, swept_);
+  delegate(gauss_seidel_, problem, stopping().tolerance, static_cast<int>(sweeps_), swept_);
   return swept_.residual;
 }
 
-/** The first sufficient trial, or the best one, in found_. @return its E */
-double SweptNewton::search(const DelassusProblem& problem, const Eigen::VectorXd& r, double value, double& length)
+void SweptNewton::adapt(bool sufficient)
 {
-  double best = std::numeric_limits<double>::infinity();
-  for (const double t : STEP_LENGTHS)
+  if (sufficient)
   {
-    const double tried = trial(problem, r, t);
-    if (tried < best)
-    {
-      best = tried;
-      length = t;
-      found_.swap(swept_.solution.r);
-    }
-    if (best <= options_.sufficient * value || timeIsUp())
-      break;
-  }
-  return best;
-}
-
-void SweptNewton::adaptAlpha(bool sufficient, bool full)
-{
-  if (!sufficient)
-    alpha_ *= ALPHA_INCREASE;
-  else if (full)
     alpha_ = std::max(ALPHA_DECREASE * alpha_, ALPHA_MIN);
+    sweeps_ = std::max<double>(SWEEPS_DECREASE * sweeps_, first_sweeps_);
+    return;
+  }
+  alpha_ *= ALPHA_INCREASE;
+  sweeps_ = std::min<double>(SWEEPS_INCREASE * sweeps_, options_.max_sweeps);
   if (alpha_ <= options_.proximal_max)
     return;
   alpha_ = restart_;
@@ -94,6 +84,7 @@ void SweptNewton::adaptAlpha(bool sufficient, bool full)
 void SweptNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   prepare(problem);
+  rho_normal_ = rho_tangential_ = stepLengths();
   Eigen::VectorXd& r = result.solution.r;
   problem.W.apply(r, u_);
   u_ += problem.q;
@@ -102,18 +93,17 @@ void SweptNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
   best_r_ = r;
   alpha_ = options_.proximal_start;
   restart_ = options_.proximal_restart;
+  sweeps_ = first_sweeps_ = std::clamp(problem.W.blocks() / LAWS_A_SWEEP, options_.sweeps, options_.many_sweeps);
   while (best > stopping().tolerance && result.iterations < stopping().max_iterations && !timeIsUp())
   {
     ++result.iterations;
     evaluate(problem, u_, r, true);
-    double length = 0.0;
-    const double found = direction(problem) ? search(problem, r, value, length)  //
-                                            : std::numeric_limits<double>::infinity();
-    adaptAlpha(found <= options_.sufficient * value, length == 1.0);
+    const double found = direction(problem) ? sweptStep(problem, r) : std::numeric_limits<double>::infinity();
+    adapt(found <= options_.sufficient * value);
     if (!(found <= options_.worst * value))
       continue;
     value = found;
-    r.swap(found_);
+    r.swap(swept_.solution.r);
     problem.W.apply(r, u_);
     u_ += problem.q;
     if (value < best)

@@ -80,6 +80,7 @@ protected:
   bool direction(const DelassusProblem& problem);
   double alpha_ = 0.0;
   Eigen::VectorXd u_, step_, best_r_;
+  Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law
 
 private:
   enum class Inner
@@ -108,7 +109,6 @@ private:
   struct Sparse;
   std::unique_ptr<Sparse> sparse_;
 
-  Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law
   Eigen::VectorXd weight_;  ///< 1/rho_i a row: D, and what makes the merit a velocity
   Eigen::VectorXd centre_, u_alpha_, f_, step_velocity_, trial_r_, trial_u_;
   std::vector<double> by_u_, by_r_;  ///< A_i and B_i, 9 numbers a law, row-major
