@@ -8,12 +8,12 @@
  *      some more rows: the same for a few steps, given up at the first that fails;
  *      many rows: Haslinger's fixed point as long as every iteration takes four fifths of the residual, as it does
  *      where nearly everything sticks (a tower at rest), then Gauss-Seidel sweeps with a stall detector, then proximal
- *      Newton from where they ended; from swept_first_rows to newton_last_rows Newton steps each followed by sweeps
- *      (solver/swept_newton.h) between the two
+ *      Newton from where they ended; from swept_first_rows on Newton steps each followed by sweeps
+ *      (solver/swept_newton.h) between the two, above newton_last_rows in place of Newton
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
  *      Fischer-Burmeister Newton and De Saxce's, in longer rounds; above newton_last_rows instead of these Newtons
- *      Haslinger's fixed point, which needs products with W only; on more than few rows a round ends with Newton with
- *      sweeps, above swept_last_rows nothing is factored
+ *      Haslinger's fixed point, which needs products with W only; on more than few rows Newton with sweeps,
+ *      before it above newton_last_rows, else at the end of a round; above swept_last_rows nothing is factored
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
