@@ -58,7 +58,7 @@ void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::ve
     return;
   }
   const int size = rowCount(laws);
-  const bool sparse = size > DENSE_ROWS && !whole.is_dense_ && whole.storedShare(blocks, position, size) < DENSE_SHARE;
+  const bool sparse = !whole.is_dense_ && !prefersDense(size, whole.storedShare(blocks, position, size));
   if (!whole.is_dense_ && kind != OperatorKind::DENSE && (sparse || kind == OperatorKind::SPARSE))
   {
     is_dense_ = is_matrix_free_ = false;

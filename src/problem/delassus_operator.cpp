@@ -118,6 +118,14 @@ double* DelassusOperator::block(int i, int j)
   return values_.data() + value_begin_[row] + dimension(i) * (found - first);
 }
 
+bool DelassusOperator::prefersDense(int rows, double share)
+{
+  constexpr int FEW = 16, MANY = 96;
+  constexpr double SHARE = 0.15, SHARE_OF_MANY = 0.4;
+  // Written so that no rows, share NaN, are dense.
+  return rows <= FEW || !(share < (rows <= MANY ? SHARE : SHARE_OF_MANY));
+}
+
 void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& laws, OperatorKind kind)
 {
   const int size = rowCount(laws);
@@ -125,9 +133,8 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
     throw std::invalid_argument("W is " + std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
                                 ", expected " + std::to_string(size) + " x " + std::to_string(size) +
                                 " for the given laws");
-  const bool full =
-      size <= DENSE_ROWS || static_cast<double>(matrix.nonZeros()) >= DENSE_SHARE * size * static_cast<double>(size);
-  if (kind == OperatorKind::DENSE || (kind != OperatorKind::SPARSE && full))
+  const double share = static_cast<double>(matrix.nonZeros()) / (static_cast<double>(size) * size);
+  if (kind == OperatorKind::DENSE || (kind != OperatorKind::SPARSE && prefersDense(size, share)))
   {
     resizeDense(laws);
     dense_ = matrix;

@@ -217,8 +217,7 @@ void DelassusReduction::preparePairs()
           local_.laws[static_cast<std::size_t>(i)].dimension() * local_.laws[static_cast<std::size_t>(j)].dimension();
   }
   DelassusOperator& W = local_.W;
-  const bool full = rows <= DelassusOperator::DENSE_ROWS ||
-                    entries >= DelassusOperator::DENSE_SHARE * rows * static_cast<double>(rows);
+  const bool full = DelassusOperator::prefersDense(rows, entries / (static_cast<double>(rows) * rows));
   const bool dense = kind_ == OperatorKind::DENSE || (kind_ == OperatorKind::AUTOMATIC && full);
   if (dense)
   {

@@ -34,6 +34,16 @@ constexpr int HASLINGER_INNER_STEPS = 100;
 /// What a first turn reached is a better start for the others when it is below this share of the residual before it.
 constexpr double WORTH_KEEPING = 1e-3;
 
+/// Newton from the start of a problem: far from a solution a first failure should cost one step, not a whole excursion;
+/// near one it is the other way round.
+SemismoothNewtonOptions firstNewton(bool restarts)
+{
+  SemismoothNewtonOptions options;
+  options.watchdog_min = WATCHDOG_MIN;
+  options.restarts = restarts;
+  return options;
+}
+
 std::unique_ptr<Haslinger> quickHaslinger()
 {
   HaslingerOptions options;
@@ -80,6 +90,8 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , options_(options)
   , gauss_seidel_(std::make_unique<GaussSeidel>())
   , newton_(std::make_unique<AcNewton>())
+  , first_newton_(std::make_unique<AcNewton>(firstNewton(true)))
+  , newton_trial_(std::make_unique<AcNewton>(firstNewton(false)))
   , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
 {
@@ -217,18 +229,12 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
   return true;
 }
 
-/** Newton from the start. Without restarts it ends at its first failure. */
-bool Portfolio::tryNewton(const DelassusProblem& problem, int steps, bool restarts, SolverResult& result)
+/** Newton from the start, and in a series of problems a step more than asked for. */
+bool Portfolio::tryNewton(AcNewton& newton, const DelassusProblem& problem, int steps, SolverResult& result)
 {
-  SemismoothNewtonOptions options;
-  // Far from a solution a first failure should cost one step, not a whole excursion; near one it is the other way
-  // round.
-  options.watchdog_min = WATCHDOG_MIN;
-  options.restarts = restarts;
-  newton_->setOptions(options);
-  const bool done = run(*newton_, problem, steps, result);
+  const bool done = run(newton, problem, steps, result);
   if (done && !coldStart() && best_value_ > SERIES_MARGIN * stopping().tolerance)
-    run(*newton_, problem, 1, result, SERIES_MARGIN);
+    run(newton, problem, 1, result, SERIES_MARGIN);
   return done;
 }
 
@@ -252,10 +258,10 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
   const bool swept = !newton_first && problem.W.rows() <= options_.swept_last_rows;
-  if (!done && problem.W.rows() <= std::max(options_.newton_first_rows, options_.newton_try_rows))
-    done = tryNewton(problem, newton_first ? options_.newton_first_steps : options_.newton_try_steps, newton_first,
-                     result);
-  newton_->setOptions({});
+  if (newton_first)
+    done = done || tryNewton(*first_newton_, problem, options_.newton_first_steps, result);
+  else if (problem.W.rows() <= options_.newton_try_rows)
+    done = done || tryNewton(*newton_trial_, problem, options_.newton_try_steps, result);
   if (!newton_first)
   {
     done = done || tryHaslinger(problem, result);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
+#include "frictional_contact_sim/solver/portfolio.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "support/allocation_counter.h"
 #include "support/hand_problems.h"
@@ -23,17 +24,22 @@ StoppingOptions stopping()
 
 /// Allocations of the second solve of a shape; the second problem's contacts open and close otherwise.
 template <typename Problem>
+long allocations(Solver& solver, const Problem& first, const Problem& second)
+{
+  solver.setStopping(stopping());
+  SolverResult result;
+  solver.solve(first, nullptr, result);
+  solver.solve(second, nullptr, result);
+  const AllocationCounter counter;
+  solver.solve(first, nullptr, result);
+  EXPECT_GT(result.iterations, 0) << solver.name();
+  return counter.count();
+}
+
+template <typename Problem>
 long allocations(const std::string& name, const Problem& first, const Problem& second)
 {
-  const std::unique_ptr<Solver> solver = createSolver(name);
-  solver->setStopping(stopping());
-  SolverResult result;
-  solver->solve(first, nullptr, result);
-  solver->solve(second, nullptr, result);
-  const AllocationCounter counter;
-  solver->solve(first, nullptr, result);
-  EXPECT_GT(result.iterations, 0) << name;
-  return counter.count();
+  return allocations(*createSolver(name), first, second);
 }
 
 DelassusProblem reversed(const DelassusProblem& problem)
@@ -87,6 +93,15 @@ TEST(AllocationTest, SparseLocalProblems)
   ASSERT_GT(problem.W.rows(), 150);
   for (const char* name : EVERY_STEP)
     EXPECT_EQ(allocations(name, problem, reversed(problem)), 0) << name;
+}
+
+TEST(AllocationTest, PortfolioThatBeginsWithHaslingerAndSweeps)
+{
+  PortfolioOptions options;
+  options.newton_first_rows = options.newton_try_rows = 0;
+  Portfolio portfolio(options);
+  const DelassusProblem problem = reduce(chain(60));
+  EXPECT_EQ(allocations(portfolio, problem, reversed(problem)), 0);
 }
 
 TEST(AllocationTest, GlobalProblemsWithBilaterals)

@@ -89,6 +89,9 @@ TEST(SolverTest, MisuseThrowsWithTheNameAndTheValue)
   SemismoothNewtonOptions newton;
   newton.proximal_start = 0.0;
   expectMessage([&] { AcNewton{newton}; }, "proximal_start is 0");
+  newton = {};
+  newton.proximal_restart = 20.0;
+  expectMessage([&] { AcNewton{newton}; }, "proximal_restart is 20");
   PortfolioOptions portfolio;
   portfolio.newton_steps = 0;
   expectMessage([&] { Portfolio{portfolio}; }, "portfolio.newton_steps is 0");
@@ -140,6 +143,25 @@ TEST(AcNewtonTest, ProximalTermLeavesOnlyItsSquareInAStepFromTheCentre)
   const SolverResult result = newton.solve(problem);
   EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.residual;
   EXPECT_EQ(result.iterations, 1);
+}
+
+TEST(AcNewtonTest, WithoutRestartsTheFirstFailureEndsTheRun)
+{
+  // A start far out on one contact: no length of the first step decreases the merit enough.
+  const IncrementalProblem problem = restingBox(1, {1, 1, 1}, 0.5, {3, 1, -5}, GRAVITY, TIME_STEP);
+  Solution guess;
+  guess.r = 1e6 * VectorXd::Random(problem.rows());
+  SemismoothNewtonOptions options;
+  options.watchdog_min = 1.0;
+  options.inner_iterations = 1;
+  AcNewton newton(options);
+  newton.setStopping(stopping(1e-10));
+  const SolverResult stubborn = newton.solve(problem, &guess);
+  options.restarts = false;
+  newton.setOptions(options);
+  const SolverResult once = newton.solve(problem, &guess);
+  EXPECT_EQ(once.status, SolverStatus::STAGNATED);
+  EXPECT_LT(once.iterations, stubborn.iterations);
 }
 
 TEST(AcNewtonTest, SurvivesTheSingularJacobianOfExampleD2)

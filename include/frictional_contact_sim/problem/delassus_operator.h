@@ -51,10 +51,12 @@ class DelassusOperator
 public:
   using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// Up to this many rows W is always dense.
-  static constexpr int DENSE_ROWS = 96;
-  /// Above DENSE_ROWS, dense when at least this share of the entries is stored.
-  static constexpr double DENSE_SHARE = 0.4;
+  /**
+   * @brief The automatic choice of storage. Dense loops are quicker an entry: the fewer the rows, the emptier W must be
+   * to be kept sparse.
+   * @param share stored entries by all entries [-]
+   */
+  static bool prefersDense(int rows, double share);
 
   /** @brief Sets the blocks and dense storage (values undefined); fill it through dense(). No allocation when
    * unchanged. */

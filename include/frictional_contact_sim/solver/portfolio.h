@@ -43,7 +43,8 @@ struct PortfolioOptions
   int newton_last_rows = 6000;  ///< above, Newton alone takes too many factorizations
   int swept_first_rows = 2500;  ///< from here on Newton with sweeps goes before Newton alone, >= 0
   int swept_last_rows = 60000;  ///< above, nothing is factored: memory and time grow faster than the problem
-  int swept_steps = 30;  ///< budget of Newton with sweeps on larger problems, doubled every round, >= 1
+  int swept_steps =
+      30;  ///< budget of Newton with sweeps, doubled every round, a step one iteration with its sweeps, >= 1
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
@@ -74,13 +75,14 @@ protected:
 private:
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
   double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
-  bool tryNewton(const DelassusProblem& problem, int steps, bool restarts, SolverResult& result);
+  bool tryNewton(AcNewton& newton, const DelassusProblem& problem, int steps, SolverResult& result);
   bool tryHaslinger(const DelassusProblem& problem, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;
-  std::unique_ptr<AcNewton> newton_;
+  std::unique_ptr<AcNewton> newton_, first_newton_;
+  std::unique_ptr<AcNewton> newton_trial_;  ///< gives up at the first failure
   std::unique_ptr<Haslinger> haslinger_;  ///< gives up when it is slow
   std::unique_ptr<SweptNewton> swept_newton_;
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton

@@ -13,7 +13,8 @@
  * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
  * near it: near zero for a cold start, near the last step's impulses for a warm one. Contacts predicted open are
  * eliminated before the factorization: their impulse goes to zero. Dense LU with partial pivoting up to DENSE_LIMIT
- * active rows, sparse LU beyond (which allocates), its ordering reused while the set of active rows stays.
+ * active rows, sparse LU beyond, UMFPACK for large systems (both allocate), the ordering reused while the set of active
+ * rows stays.
  *
  * The contact function is an argument: Alart-Curnier (ac_newton) here, others are one ContactMap each.
  * Source: Alart, Curnier (1991); Cadoux (2009), 4.2, 4.3, appendix D; Acary, Bremond, Huber (2018), section on the
@@ -76,7 +77,8 @@ protected:
   void prepare(const DelassusProblem& problem);
   /** @brief Phi at (u, r), its Jacobians when asked for. @return |Phi/rho|^2 [m^2/s^2] */
   double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
-  /** @brief step_ from the last evaluation with Jacobians and alpha_. @return false when there is none */
+  /** @brief step_ from the last evaluation with Jacobians, alpha_ and perturbation_ (0: at the centre, where a small
+   * alpha is taken out again). @return false when there is none */
   bool direction(const DelassusProblem& problem);
   double alpha_ = 0.0;
   Eigen::VectorXd u_, step_, best_r_;

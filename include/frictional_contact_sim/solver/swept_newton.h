@@ -51,6 +51,7 @@ protected:
   void doSolve(const DelassusProblem& problem, SolverResult& result) override;
 
 private:
+  using SemismoothNewton::setOptions;  // would set what this method sets itself
   double sweptStep(const DelassusProblem& problem, const Eigen::VectorXd& r);
   void adapt(bool sufficient);
 
