@@ -13,6 +13,7 @@
 
 #include "comparison/isolation.h"
 #include "comparison/results.h"
+#include "frictional_contact_sim/math/blas_threads.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/solver/registry.h"
@@ -182,7 +183,7 @@ int main(int argc, char** argv)
   return tools::runTool(app, argc, argv,
                         [&]
                         {
-                          useOneBlasThread();
+                          const OneBlasThread one_thread;
                           run(arguments);
                           return tools::SUCCESS;
                         });

@@ -1,6 +1,5 @@
 #include "comparison/isolation.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/time.h>
@@ -94,13 +93,6 @@ double clockOverhead()
     return least;
   }();
   return overhead;
-}
-
-void useOneBlasThread()
-{
-  using SetThreads = void (*)(int);
-  if (void* symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
-    reinterpret_cast<SetThreads>(symbol)(1);
 }
 
 }  // namespace comparison

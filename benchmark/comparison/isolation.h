@@ -47,7 +47,4 @@ double cpuTime();
 /** @brief What a pair of cpuTime() calls costs [s]; measured once. */
 double clockOverhead();
 
-/** @brief One BLAS thread: solvers are compared by CPU time on one core. */
-void useOneBlasThread();
-
 }  // namespace comparison

@@ -122,8 +122,7 @@ bool DelassusOperator::prefersDense(int rows, double share)
 {
   constexpr int FEW = 16, MANY = 96;
   constexpr double SHARE = 0.15, SHARE_OF_MANY = 0.4;
-  // Written so that no rows, share NaN, are dense.
-  return rows <= FEW || !(share < (rows <= MANY ? SHARE : SHARE_OF_MANY));
+  return rows <= FEW || share >= (rows <= MANY ? SHARE : SHARE_OF_MANY);
 }
 
 void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& laws, OperatorKind kind)

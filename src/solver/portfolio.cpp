@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
@@ -13,6 +12,7 @@
 #include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/one_contact.h"
 #include "frictional_contact_sim/solver/swept_newton.h"
+#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -53,13 +53,6 @@ std::unique_ptr<Haslinger> quickHaslinger()
   return std::make_unique<Haslinger>(options, std::make_unique<SpectralGradient>(inner));
 }
 
-void require(bool condition, const char* name, int value, int least)
-{
-  if (!condition)
-    throw std::invalid_argument(std::string("portfolio.") + name + " is " + std::to_string(value) +
-                                ", expected >= " + std::to_string(least));
-}
-
 /** u = W r + q. */
 void relativeVelocity(const DelassusProblem& problem, const Eigen::VectorXd& r, Eigen::VectorXd& u)
 {
@@ -70,19 +63,21 @@ void relativeVelocity(const DelassusProblem& problem, const Eigen::VectorXd& r, 
 
 void PortfolioOptions::validate() const
 {
-  require(newton_first_rows >= 0, "newton_first_rows", newton_first_rows, 0);
-  require(newton_first_steps >= 1, "newton_first_steps", newton_first_steps, 1);
-  require(haslinger_steps >= 1, "haslinger_steps", haslinger_steps, 1);
-  require(newton_try_rows >= 0, "newton_try_rows", newton_try_rows, 0);
-  require(newton_try_steps >= 1, "newton_try_steps", newton_try_steps, 1);
-  require(newton_last_rows >= newton_first_rows, "newton_last_rows", newton_last_rows, newton_first_rows);
-  require(first_sweeps >= 0, "first_sweeps", first_sweeps, 0);
-  require(swept_first_rows >= 0, "swept_first_rows", swept_first_rows, 0);
-  require(swept_last_rows >= swept_first_rows, "swept_last_rows", swept_last_rows, swept_first_rows);
-  require(swept_steps >= 1, "swept_steps", swept_steps, 1);
-  require(newton_steps >= 1, "newton_steps", newton_steps, 1);
-  require(later_sweeps >= 1, "later_sweeps", later_sweeps, 1);
-  require(max_rounds >= 0, "max_rounds", max_rounds, 0);
+  requireOption(newton_first_rows >= 0, "portfolio.newton_first_rows", newton_first_rows, ">= 0");
+  requireOption(newton_first_steps >= 1, "portfolio.newton_first_steps", newton_first_steps, ">= 1");
+  requireOption(haslinger_steps >= 1, "portfolio.haslinger_steps", haslinger_steps, ">= 1");
+  requireOption(newton_try_rows >= 0, "portfolio.newton_try_rows", newton_try_rows, ">= 0");
+  requireOption(newton_try_steps >= 1, "portfolio.newton_try_steps", newton_try_steps, ">= 1");
+  requireOption(newton_last_rows >= newton_first_rows, "portfolio.newton_last_rows", newton_last_rows,
+                ">= newton_first_rows");
+  requireOption(first_sweeps >= 0, "portfolio.first_sweeps", first_sweeps, ">= 0");
+  requireOption(swept_first_rows >= 0, "portfolio.swept_first_rows", swept_first_rows, ">= 0");
+  requireOption(swept_last_rows >= swept_first_rows, "portfolio.swept_last_rows", swept_last_rows,
+                ">= swept_first_rows");
+  requireOption(swept_steps >= 1, "portfolio.swept_steps", swept_steps, ">= 1");
+  requireOption(newton_steps >= 1, "portfolio.newton_steps", newton_steps, ">= 1");
+  requireOption(later_sweeps >= 1, "portfolio.later_sweeps", later_sweeps, ">= 1");
+  requireOption(max_rounds >= 0, "portfolio.max_rounds", max_rounds, ">= 0");
 }
 
 Portfolio::Portfolio(const PortfolioOptions& options)

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "frictional_contact_sim/problem/law_functions.h"
+#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -17,13 +17,6 @@ constexpr double INNER_SHARE = 0.1;
 constexpr double MOVE_SHARE = 0.1;
 /// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
 constexpr double ZERO_DIAGONAL = 1e-14;
-
-void require(bool condition, const char* name, double value, const char* expected)
-{
-  if (!condition)
-    throw std::invalid_argument(std::string("semismooth_newton.") + name + " is " + std::to_string(value) +
-                                ", expected " + expected);
-}
 
 template <int D>
 void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_r)
@@ -43,19 +36,22 @@ void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_
 
 void SemismoothNewtonOptions::validate() const
 {
-  require(proximal_start > 0.0, "proximal_start", proximal_start, "> 0");
-  require(proximal_min > 0.0, "proximal_min", proximal_min, "> 0");
-  require(proximal_max >= proximal_start, "proximal_max", proximal_max, ">= proximal_start");
-  require(proximal_restart > 0.0, "proximal_restart", proximal_restart, "> 0");
-  require(proximal_restart <= proximal_max, "proximal_restart", proximal_restart, "<= proximal_max");
-  require(proximal_decrease > 0.0 && proximal_decrease < 1.0, "proximal_decrease", proximal_decrease, "in (0, 1)");
-  require(proximal_increase > 1.0, "proximal_increase", proximal_increase, "> 1");
-  require(inner_iterations >= 1, "inner_iterations", inner_iterations, ">= 1");
-  require(watchdog_min >= 0.0, "watchdog_min", watchdog_min, ">= 0");
-  require(line_search_steps >= 0, "line_search_steps", line_search_steps, ">= 0");
-  require(line_search_memory >= 1 && line_search_memory <= 8, "line_search_memory", line_search_memory, "1 to 8");
-  require(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "sufficient_decrease", sufficient_decrease,
-          "in (0, 0.5)");
+  requireOption(proximal_start > 0.0, "semismooth_newton.proximal_start", proximal_start, "> 0");
+  requireOption(proximal_min > 0.0, "semismooth_newton.proximal_min", proximal_min, "> 0");
+  requireOption(proximal_max >= proximal_start, "semismooth_newton.proximal_max", proximal_max, ">= proximal_start");
+  requireOption(proximal_restart > 0.0, "semismooth_newton.proximal_restart", proximal_restart, "> 0");
+  requireOption(proximal_restart <= proximal_max, "semismooth_newton.proximal_restart", proximal_restart,
+                "<= proximal_max");
+  requireOption(proximal_decrease > 0.0 && proximal_decrease < 1.0, "semismooth_newton.proximal_decrease",
+                proximal_decrease, "in (0, 1)");
+  requireOption(proximal_increase > 1.0, "semismooth_newton.proximal_increase", proximal_increase, "> 1");
+  requireOption(inner_iterations >= 1, "semismooth_newton.inner_iterations", inner_iterations, ">= 1");
+  requireOption(watchdog_min >= 0.0, "semismooth_newton.watchdog_min", watchdog_min, ">= 0");
+  requireOption(line_search_steps >= 0, "semismooth_newton.line_search_steps", line_search_steps, ">= 0");
+  requireOption(line_search_memory >= 1 && line_search_memory <= 8, "semismooth_newton.line_search_memory",
+                line_search_memory, "1 to 8");
+  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "semismooth_newton.sufficient_decrease",
+                sufficient_decrease, "in (0, 0.5)");
 }
 
 void SemismoothNewton::setOptions(const SemismoothNewtonOptions& options)

@@ -43,8 +43,8 @@ struct PortfolioOptions
   int newton_last_rows = 6000;  ///< above, Newton alone takes too many factorizations
   int swept_first_rows = 2500;  ///< from here on Newton with sweeps goes before Newton alone, >= 0
   int swept_last_rows = 60000;  ///< above, nothing is factored: memory and time grow faster than the problem
-  int swept_steps =
-      30;  ///< budget of Newton with sweeps, doubled every round, a step one iteration with its sweeps, >= 1
+  /// budget of Newton with sweeps, doubled every round, >= 1; a step is one iteration, whatever its sweeps
+  int swept_steps = 30;
   int first_sweeps = 60;  ///< Gauss-Seidel sweeps before Newton on larger problems, >= 0
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
