@@ -9,7 +9,10 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/** Chooses the pivot of column k, exchanges whole rows and scales the column below it. */
+/**
+ * Chooses the pivot of column k, exchanges whole rows and scales the column below it. The diagonal keeps the pivots'
+ * reciprocals: a substitution then divides by nothing.
+ */
 inline bool eliminate(double* values, int size, int k, int& pivot)
 {
   double* column = values + static_cast<std::ptrdiff_t>(k) * size;
@@ -25,6 +28,7 @@ inline bool eliminate(double* values, int size, int k, int& pivot)
   const double inverse = 1.0 / column[k];
   for (int i = k + 1; i < size; ++i)
     column[i] *= inverse;
+  column[k] = inverse;
   return true;
 }
 
@@ -73,7 +77,7 @@ VECTOR_CLONES void substitute(const double* values, const int* pivots, int size,
   for (int k = size - 1; k >= 0; --k)
   {
     column -= size;
-    x[k] /= column[k];
+    x[k] *= column[k];
     const double value = x[k];
     for (int i = 0; i < k; ++i)
       x[i] -= value * column[i];

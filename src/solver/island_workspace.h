@@ -14,9 +14,6 @@
 
 namespace frictional_contact_sim
 {
-/// SolverResult::residual before a method has evaluated its stopping criterion.
-constexpr double UNKNOWN = -1.0;
-
 /** @brief Storage for the islands of one shape, used by one after the other. */
 struct IslandSlot
 {

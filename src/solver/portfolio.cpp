@@ -139,6 +139,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   }
   else
     result.solution.r = best_r_;
+  result.residual = UNKNOWN_RESIDUAL;  // the next method reads u with it
   return best_value_ <= stopping().tolerance;
 }
 
@@ -210,7 +211,8 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
   }
   if (attempt > 1)
     return false;
-  if (!anyWouldSlide(problem))
+  const bool slides = anyWouldSlide(problem);
+  if (!slides)
   {
     solveNormalsApart(problem, r);
     relativeVelocity(problem, r, u);
@@ -219,6 +221,8 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
   const double load = problem.q.dot(r);
   const double power = r.dot(u) - load;
   const double t = power > 0.0 ? std::clamp(-load / power, 0.0, 1.0) : 0.0;
+  if (slides && t == 1.0)
+    return false;
   r *= t;
   u = t * (u - problem.q) + problem.q;
   return true;
@@ -259,6 +263,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
     done = done || tryNewton(*newton_trial_, problem, options_.newton_try_steps, result);
   if (!newton_first)
   {
+    result.residual = UNKNOWN_RESIDUAL;
     done = done || tryHaslinger(problem, result);
     done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
     if (swept && problem.W.rows() >= options_.swept_first_rows)

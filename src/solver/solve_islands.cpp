@@ -40,7 +40,7 @@ void clear(SolverResult& result)
 {
   result.status = SolverStatus::NOT_RUN;
   result.iterations = 0;
-  result.residual = UNKNOWN;
+  result.residual = UNKNOWN_RESIDUAL;
   result.solver.clear();
   result.tried.clear();
   result.message.clear();

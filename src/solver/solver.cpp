@@ -139,7 +139,6 @@ void Solver::delegate(Solver& method, const DelassusProblem& problem, double tol
   method.cold_start_ = cold_start_;
   method.step_lengths_ = step_lengths_;
   method.free_velocity_ = free_velocity_;
-  result.residual = UNKNOWN;
   method.doSolve(problem, result);
 }
 
@@ -194,7 +193,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   else
   {
     result.solution.r = guess->r;
-    result.residual = UNKNOWN;
+    result.residual = UNKNOWN_RESIDUAL;
   }
   cold_start_ = guess == nullptr;
   if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)

@@ -101,6 +101,7 @@ private:
   void substitute(const DelassusProblem& problem);
   void refine(const DelassusProblem& problem);
   void moveCentre(const Eigen::VectorXd& r);
+  double criterion(const DelassusProblem& problem, SolverResult& result);
   double evaluateProximal(const DelassusProblem& problem, const Eigen::VectorXd& r);
   Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
   double lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r);
@@ -112,7 +113,7 @@ private:
   std::unique_ptr<Sparse> sparse_;
 
   Eigen::VectorXd weight_;  ///< 1/rho_i a row: D, and what makes the merit a velocity
-  Eigen::VectorXd centre_, u_alpha_, f_, step_velocity_, trial_r_, trial_u_;
+  Eigen::VectorXd centre_, u_alpha_, f_, step_velocity_, full_r_, full_u_, trial_r_, trial_u_;
   std::vector<double> by_u_, by_r_;  ///< A_i and B_i, 9 numbers a law, row-major
   std::vector<int> active_;  ///< active row -> row
   std::vector<int> position_;  ///< row -> active row or -1

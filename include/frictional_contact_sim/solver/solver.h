@@ -62,6 +62,9 @@ struct SolverResult
   std::string message;  ///< why it stopped, one line, empty when converged
 };
 
+/// SolverResult::residual inside a solve, as long as the stopping criterion has not been evaluated.
+constexpr double UNKNOWN_RESIDUAL = -1.0;
+
 class DelassusReduction;
 struct IslandSlot;
 struct IslandWorkspace;
@@ -100,8 +103,8 @@ public:
 protected:
   /**
    * @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message.
-   * result.residual is the stopping criterion at that r, before and after, or negative when it is not known; it only
-   * saves evaluations, solve() judges for itself.
+   * result.residual is the stopping criterion at that r, before (then result.solution.u = W r + q too) and after, or
+   * negative when it is not known; it only saves evaluations, solve() judges for itself.
    */
   virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
   /**
@@ -122,7 +125,7 @@ protected:
   bool coldStart() const { return cold_start_; }
   /**
    * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
-   * and the final judgement of solve(): for methods made of methods.
+   * and the final judgement of solve(): for methods made of methods. result.residual as for doSolve().
    */
   void delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
                 SolverResult& result) const;
