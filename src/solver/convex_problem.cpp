@@ -107,23 +107,26 @@ double optimalityError(const ConvexProblem& problem, const Eigen::VectorXd& u, c
   for (int i = 0; i < problem.W->blocks(); ++i)
   {
     // Scaled by 1/rho before projecting, so that a huge rho does not swallow u.
-    const double rho = problem.step_lengths[i];
+    const double inverse = 1.0 / problem.step_lengths[i];
     SimpleSet set = problem.sets[static_cast<std::size_t>(i)];
     if (set.type == SetType::CYLINDER || set.type == SetType::INTERVAL)
-      set.parameter /= rho;
+      set.parameter *= inverse;
     const int first = problem.W->offset(i);
-    std::array<double, 3> projected{};
+    std::array<double, 3> scaled{}, projected{};
     for (int k = 0; k < set.dimension; ++k)
-      projected[static_cast<std::size_t>(k)] = r[first + k] / rho - u[first + k];
+    {
+      scaled[static_cast<std::size_t>(k)] = inverse * r[first + k];
+      projected[static_cast<std::size_t>(k)] = scaled[static_cast<std::size_t>(k)] - u[first + k];
+    }
     projectOntoSet(set, projected.data());
     double square = 0.0;
     for (int k = 0; k < set.dimension; ++k)
-      square += std::pow(r[first + k] / rho - projected[static_cast<std::size_t>(k)], 2);
+      square += std::pow(scaled[static_cast<std::size_t>(k)] - projected[static_cast<std::size_t>(k)], 2);
     // Not std::max: a NaN must not be lost.
-    if (!(std::sqrt(square) <= largest))
-      largest = std::sqrt(square);
+    if (!(square <= largest))
+      largest = square;
   }
-  return largest;
+  return std::sqrt(largest);
 }
 
 }  // namespace frictional_contact_sim

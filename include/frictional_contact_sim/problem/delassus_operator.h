@@ -181,12 +181,20 @@ inline Vector<D> DelassusOperator::rowProduct(int i, const Eigen::VectorXd& x) c
 template <int D>
 inline Vector<D> DelassusOperator::storedProduct(int i, const Eigen::VectorXd& x) const
 {
-  Vector<D> y = Vector<D>::Zero();
+  // Two sums: one would wait for its own last addition at every column.
+  Vector<D> even = Vector<D>::Zero(), odd = Vector<D>::Zero();
   const auto row = static_cast<std::size_t>(i);
   const double* value = values_.data() + value_begin_[row];
-  for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += D)
-    y += x[columns_[static_cast<std::size_t>(k)]] * Eigen::Map<const Vector<D>>(value);
-  return y;
+  const int* column = columns_.data() + row_begin_[row];
+  const int* const end = columns_.data() + row_begin_[row + 1];
+  for (; column + 1 < end; column += 2, value += 2 * D)
+  {
+    even += x[column[0]] * Eigen::Map<const Vector<D>>(value);
+    odd += x[column[1]] * Eigen::Map<const Vector<D>>(value + D);
+  }
+  if (column < end)
+    even += x[*column] * Eigen::Map<const Vector<D>>(value);
+  return even + odd;
 }
 
 template <int D>
