@@ -3,11 +3,9 @@
 
 rho_s(tau) = share of the problems that solver s solves within tau times the time of the quickest solver of all. One
 picture a family of problems and target, 1e-4 and 1e-8 of the residual E, judged by the independent validator. Left:
-our methods, where more than the portfolio was tried; right: Siconos's; our portfolio in both. 3D problems only: a solver
-is not to be blamed for problems it is not made for.
+our methods, where more than the portfolio was tried; right: Siconos's; our portfolio in both.
 """
 import argparse
-import csv
 import math
 import os
 
@@ -15,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from report import profile_times, read  # noqa: E402
 
 LARGEST_RATIO = 100.0
 # Name of the pictures, title, CSV files. Several files are one family, be it other problems or other solvers (the first
@@ -22,32 +21,6 @@ LARGEST_RATIO = 100.0
 FAMILIES = [("profile", "FCLib, 3D", ["fclib"]),
             ("profile_large", "Large random problems of the thesis", ["random_large", "random_large_siconos"]),
             ("profile_scenes", "Scenes of the simulator", ["scenes", "scenes_bilaterals"])]
-
-
-def read_times(paths, target):
-    """{problem: {solver: seconds}} of what was solved, and the names of ours and theirs."""
-    times, ours, theirs, tried = {}, [], [], {}
-    for path in paths:
-        with open(path, newline="") as file:
-            for row in csv.DictReader(file):
-                solver = row["solver"]
-                if row["target"].startswith("thesis") or float(row["target"]) != target or row["dimension"] != "3" or \
-                        solver.startswith("thesis"):
-                    continue
-                names = ours if row["ours"] == "1" else theirs
-                if solver not in names:
-                    names.append(solver)
-                times.setdefault(row["problem"], {})
-                if row["problem"] in tried.setdefault(solver, set()):
-                    continue
-                tried[solver].add(row["problem"])
-                if row["status"] == "solved":
-                    times[row["problem"]][solver] = float(row["seconds"])
-    everywhere = [[name for name in names if len(tried[name]) == len(times)] for names in (ours, theirs)]
-    for solved in times.values():
-        for solver in set(solved) - set(everywhere[0] + everywhere[1]):
-            del solved[solver]
-    return times, *everywhere
 
 
 def profile(times, solver):
@@ -92,16 +65,16 @@ def main():
     arguments = parser.parse_args()
     os.makedirs(arguments.images, exist_ok=True)
     for name, family, files in FAMILIES:
-        paths = [os.path.join(arguments.results, file + ".csv") for file in files]
-        if not all(os.path.exists(path) for path in paths):
+        parts = [read(arguments.results, file) for file in files]
+        if not all(parts):
             continue
-        for target in (1e-4, 1e-8):
-            times, ours, theirs = read_times(paths, target)
+        for target in ("0.0001", "1e-08"):
+            times, ours, theirs = profile_times(sum(parts, []), target)
             # A problem nobody solved has no quickest solver and says nothing of the order.
             solvable = {problem: solved for problem, solved in times.items() if solved}
             if solvable:
-                plot(solvable, ours, theirs, f"{family}: E <= {target:g}, cold starts, CPU time",
-                     os.path.join(arguments.images, f"{name}_1e{round(math.log10(target))}.png"))
+                plot(solvable, ours, theirs, f"{family}: E <= {float(target):g}, cold starts, CPU time",
+                     os.path.join(arguments.images, f"{name}_1e{round(math.log10(float(target)))}.png"))
 
 
 if __name__ == "__main__":

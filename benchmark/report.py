@@ -192,24 +192,42 @@ def gauss_seidel(results):
     return text
 
 
-def profile_ends(rows, target):
-    """({method: (quickest of all, within twice the quickest, solved)}, number of problems); 3D, as plotted."""
-    plotted = [row for row in rows if row["dimension"] == "3" and not row["solver"].startswith("thesis")]
-    problems = group(plotted, target)
-    by_solver = {}
-    for row in sum(problems.values(), []):
-        by_solver.setdefault(row["solver"], []).append(row)
-    by_solver = {solver: own for solver, own in by_solver.items() if len(own) == len(problems)}
-    best = {}
-    for row in sum(by_solver.values(), []):
+def profile_times(rows, target):
+    """{problem: {solver: seconds}} of what was solved, names of ours, of theirs, that were tried on all problems.
+
+    3D problems only: a solver is not to be blamed for problems it is not made for. Where a solver was measured twice the
+    first row counts.
+    """
+    times, ours, theirs, tried = {}, [], [], {}
+    for row in rows:
+        solver = row["solver"]
+        if row["target"] != target or row["dimension"] != "3" or solver.startswith("thesis"):
+            continue
+        names = ours if row["ours"] == "1" else theirs
+        if solver not in names:
+            names.append(solver)
+        seconds = times.setdefault(row["problem"], {})
+        if row["problem"] in tried.setdefault(solver, set()):
+            continue
+        tried[solver].add(row["problem"])
         if solved(row):
-            best[row["problem"]] = min(best.get(row["problem"], math.inf), float(row["seconds"]))
+            seconds[solver] = float(row["seconds"])
+    everywhere = [[name for name in names if len(tried[name]) == len(times)] for names in (ours, theirs)]
+    for seconds in times.values():
+        for solver in set(seconds) - set(everywhere[0] + everywhere[1]):
+            del seconds[solver]
+    return times, *everywhere
+
+
+def profile_ends(rows, target):
+    """({method: (quickest of all, within twice the quickest, solved)}, number of problems somebody solved)."""
+    times, ours, theirs = profile_times(rows, target)
     ends = {}
-    for solver, own in by_solver.items():
-        ratios = [float(row["seconds"]) / best[row["problem"]] for row in own if solved(row)]
-        name = f"`{solver}`" if own[0]["ours"] == "1" else solver
+    for solver in ours + theirs:
+        ratios = [own[solver] / min(own.values()) for own in times.values() if solver in own]
+        name = f"`{solver}`" if solver in ours else solver
         ends[name] = (sum(ratio <= 1.0 for ratio in ratios), sum(ratio <= 2.0 for ratio in ratios), len(ratios))
-    return ends, len(best)
+    return ends, sum(bool(own) for own in times.values())
 
 
 def profile_table(rows):

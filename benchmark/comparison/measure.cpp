@@ -13,6 +13,7 @@ namespace
 using frictional_contact_sim::DelassusProblem;
 
 constexpr double TIGHTEST = 1e-15;  ///< no tolerance below this is tried
+constexpr double LADDER_STEP = 0.31622776601683794;  ///< half a decade
 constexpr double SAMPLE_TIME = 2e-4;  ///< [s]
 constexpr int MIN_SAMPLES = 3;
 constexpr int MAX_BATCH = 200;
@@ -80,7 +81,7 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
     }
     bool claimed = true;
     for (tolerance = std::min(tolerance, firstTolerance(target, entry.ours)); claimed && tolerance > TIGHTEST;
-         tolerance *= 0.1)
+         tolerance *= LADDER_STEP)
     {
       finding.tried = true;
       finding.tolerance = tolerance;

@@ -3,7 +3,7 @@
  * @file measure.h
  * @brief Finds for every contestant the loosest tolerance at which the judge is content, then times all of them.
  *
- * Search, one child process a variant: tolerances are tightened by tens until the judge's criterion holds. Of a
+ * Search, one child process a variant: tolerances are tightened by half decades until the judge's criterion holds. Of a
  * solver's variants (storages, linear solvers) the quickest stands for it.
  * Timing, one child process a problem and target: rounds in which every solver solves once from r = 0, in order. A
  * sample is the mean of as many solves as last 0.2 ms (a solve of 2 us is no sample), the result the median of the

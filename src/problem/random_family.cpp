@@ -12,11 +12,8 @@ namespace
 {
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr int MAX_COUNT = 10000000;
 constexpr int MAX_SUBSYSTEM = 3000;  ///< a dense block
 constexpr double MAX_CONDITION = 1e15;  ///< beyond it a matrix of doubles need not be definite
-constexpr double MAX_SPEED = 1e9;  ///< [m/s]
-constexpr double MAX_FRICTION = 1e6;
 
 /** Columns orthonormal: Gram-Schmidt, twice for orthogonality to round-off. */
 Eigen::MatrixXd randomOrthogonal(int size, RandomDraw& draw)

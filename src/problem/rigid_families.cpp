@@ -15,11 +15,8 @@ constexpr double GRAVITY = 9.81;  ///< [m/s^2]
 constexpr int FIXED = -1;  ///< the floor as a body
 
 constexpr const char* FAMILY = "rigid family";
-constexpr int MAX_COUNT = 10000000;
 constexpr int MAX_WIDTH = 1000;
 constexpr double MAX_MASS_RATIO = 1e15;  ///< beyond it a matrix of doubles need not be definite
-constexpr double MAX_SPEED = 1e9;  ///< [m/s, rad/s]; of a time step [s]
-constexpr double MAX_FRICTION = 1e6;
 constexpr double MAX_TILT = 7.0;  ///< [rad], more than a turn
 
 struct Ball

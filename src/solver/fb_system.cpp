@@ -1,9 +1,9 @@
 #include "frictional_contact_sim/solver/fb_system.h"
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
 
 #include "frictional_contact_sim/math/complementarity_functions.h"
+#include "frictional_contact_sim/solver/sparse_lu.h"
 
 namespace frictional_contact_sim
 {
@@ -101,8 +101,8 @@ struct FbSteps::Sparse
 {
   using Matrix = Eigen::SparseMatrix<double>;
   std::vector<Eigen::Triplet<double>> triplets;
-  Matrix jacobian, normal, identity;
-  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
+  SparseLu lu;  ///< of J
+  Matrix normal, identity;
   Eigen::SimplicialLLT<Matrix> llt;
 };
 
@@ -129,8 +129,9 @@ void FbSteps::assemble(const FbSystem& system)
   for (int i = 0; i < blocks; ++i)
     system.visitJacobian(
         i, [&](int row, int column, double value) { sparse_->triplets.emplace_back(row, column, value); });
-  sparse_->jacobian.resize(rows, rows);
-  sparse_->jacobian.setFromTriplets(sparse_->triplets.begin(), sparse_->triplets.end());
+  Sparse::Matrix& jacobian = sparse_->lu.matrix();
+  jacobian.resize(rows, rows);
+  jacobian.setFromTriplets(sparse_->triplets.begin(), sparse_->triplets.end());
 }
 
 bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
@@ -143,10 +144,10 @@ bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
   }
   else
   {
-    sparse_->lu.compute(sparse_->jacobian);
-    if (sparse_->lu.info() != Eigen::Success)
+    if (!sparse_->lu.factor())
       return false;
-    d = sparse_->lu.solve(product_);
+    d = product_;
+    sparse_->lu.solve(d);
   }
   return d.allFinite();
 }
@@ -163,8 +164,9 @@ void FbSteps::makeNormal(const FbSystem& system)
     gradient_.noalias() = jacobian_.transpose() * system.value();
     return;
   }
-  sparse_->normal = Sparse::Matrix(sparse_->jacobian.transpose()) * sparse_->jacobian;
-  gradient_ = sparse_->jacobian.transpose() * system.value();
+  const Sparse::Matrix& jacobian = sparse_->lu.matrix();
+  sparse_->normal = Sparse::Matrix(jacobian.transpose()) * jacobian;
+  gradient_ = jacobian.transpose() * system.value();
   // J' J has the pattern of W^2, its factor more.
   dense_normal_ =
       rows <= DENSE_NORMAL_ROWS && static_cast<double>(sparse_->normal.nonZeros()) > DENSE_NORMAL * rows * rows;
@@ -199,7 +201,7 @@ bool FbSteps::leastSquares(const FbSystem& system, double lambda, Eigen::VectorX
   if (dense_)
     product_.noalias() = jacobian_ * d;
   else
-    product_ = sparse_->jacobian * d;
+    product_ = sparse_->lu.matrix() * d;
   predicted = -(system.value().dot(product_) + 0.5 * product_.squaredNorm());
   return d.allFinite();
 }

@@ -191,9 +191,9 @@ double SemismoothNewton::criterion(const DelassusProblem& problem, SolverResult&
 /** Jacobians and 1/2 |Phi/rho|^2 of the proximal problem at r, u_ given. @return twice the merit */
 double SemismoothNewton::evaluateProximal(const DelassusProblem& problem, const Eigen::VectorXd& r)
 {
-  step_ = alpha_ * weight_.cwiseProduct(r - centre_);
-  perturbation_ = step_.squaredNorm();
-  u_alpha_ = u_ + step_;
+  u_alpha_ = alpha_ * weight_.cwiseProduct(r - centre_);
+  perturbation_ = u_alpha_.squaredNorm();
+  u_alpha_ += u_;
   return evaluate(problem, u_alpha_, r, true);
 }
 

@@ -2,43 +2,27 @@
  * @file semismooth_newton_step.cpp
  * @brief The linear system of a Newton step: inactive laws eliminated, the rest factored dense or sparse.
  */
-#include <Eigen/SparseLU>
-#include <Eigen/UmfPackSupport>
 #include <algorithm>
 #include <numeric>
 
-#include "frictional_contact_sim/math/blas_threads.h"
 #include "frictional_contact_sim/solver/semismooth_newton.h"
+#include "frictional_contact_sim/solver/sparse_lu.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-/// A diagonal entry of at least this share of the largest in its column is taken as the pivot: less fill.
-constexpr double PIVOT_THRESHOLD = 0.1;
-/// UMFPACK above this many rows: three to fifteen times quicker on packings; below, its analysis does not pay.
-constexpr int MULTIFRONTAL_ROWS = 1800;
-/// Nested dissection (METIS) above this many rows: it costs three times as much as minimum degree and halves the fill.
-constexpr int DISSECTION_ROWS = 5000;
 /// Largest alpha whose effect on the step is taken out again: larger ones are there to shorten the step.
 constexpr double REFINE_MAX = 1e-5;
 }  // namespace
 
-/** Factorization of large systems; the pattern is analysed anew only when the active set changes. */
+/** The system when it is factored sparse. */
 struct SemismoothNewton::Sparse
 {
-  using Matrix = Eigen::SparseMatrix<double>;
-  Matrix matrix;
+  SparseLu lu;
   std::vector<int> next;  ///< per column, where its next entry goes
-  std::vector<int> columns, rows;  ///< pattern of the last analysis
-  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
-  Eigen::UmfPackLU<Matrix> multifrontal;
-  Eigen::VectorXd right;
-
-  bool isLarge() const { return matrix.cols() > MULTIFRONTAL_ROWS; }
 
   void countColumns(const DelassusProblem& problem, const std::vector<int>& position, int size);
-  void analyse();
 };
 
 /** Sets the matrix's shape and column starts: one entry for every stored entry of W with active row and column. */
@@ -55,35 +39,10 @@ void SemismoothNewton::Sparse::countColumns(const DelassusProblem& problem, cons
                              next[static_cast<std::size_t>(target) + 1] += problem.W.dimension(i);
                          });
   std::partial_sum(next.begin(), next.end(), next.begin());
+  SparseLu::Matrix& matrix = lu.matrix();
   matrix.resize(size, size);
   matrix.resizeNonZeros(next.back());
   std::copy(next.begin(), next.end(), matrix.outerIndexPtr());
-}
-
-/** Orders the columns for the factorization, when the pattern is not that of the last call. */
-void SemismoothNewton::Sparse::analyse()
-{
-  const int* const outer = matrix.outerIndexPtr();
-  const int* const inner = matrix.innerIndexPtr();
-  const int* const outer_end = outer + matrix.cols() + 1;
-  const int* const inner_end = inner + matrix.nonZeros();
-  if (std::equal(outer, outer_end, columns.begin(), columns.end()) &&
-      std::equal(inner, inner_end, rows.begin(), rows.end()))
-    return;
-  columns.assign(outer, outer_end);
-  rows.assign(inner, inner_end);
-  if (!isLarge())
-  {
-    lu.setPivotThreshold(PIVOT_THRESHOLD);
-    lu.analyzePattern(matrix);
-    return;
-  }
-  // The pattern is symmetric and the diagonal strong: an ordering of A + A', pivots from the diagonal where possible.
-  auto& control = multifrontal.umfpackControl();
-  control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-  control[UMFPACK_ORDERING] = matrix.cols() > DISSECTION_ROWS ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD;
-  control[UMFPACK_IRSTEP] = 0.0;
-  multifrontal.analyzePattern(matrix);
 }
 
 // Where Sparse is complete.
@@ -228,9 +187,10 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
   sparse_->countColumns(problem, position_, static_cast<int>(size));
-  sparse_->next.assign(sparse_->matrix.outerIndexPtr(), sparse_->matrix.outerIndexPtr() + size);
-  int* const rows = sparse_->matrix.innerIndexPtr();
-  double* const entries = sparse_->matrix.valuePtr();
+  SparseLu::Matrix& matrix = sparse_->lu.matrix();
+  sparse_->next.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + size);
+  int* const rows = matrix.innerIndexPtr();
+  double* const entries = matrix.valuePtr();
   assemble(problem,
            [&](int row, int column, const auto& values)
            {
@@ -241,29 +201,15 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
                entries[place] = values[k];
              }
            });
-  sparse_->analyse();
-  if (sparse_->isLarge())
-  {
-    const OneBlasThread one_thread;
-    sparse_->multifrontal.factorize(sparse_->matrix);
-    return sparse_->multifrontal.info() == Eigen::Success;
-  }
-  sparse_->lu.factorize(sparse_->matrix);
-  return sparse_->lu.info() == Eigen::Success;
+  return sparse_->lu.factor();
 }
 
 /** The active part of rhs_ by the factors of factorDense or factorSparse. */
 void SemismoothNewton::substitute(const DelassusProblem& problem)
 {
   const auto size = static_cast<Eigen::Index>(active_.size());
-  if (isSparse(problem) && sparse_->isLarge())
-  {
-    // UMFPACK does not solve in place.
-    sparse_->right = rhs_.head(size);
-    rhs_.head(size) = sparse_->multifrontal.solve(sparse_->right);
-  }
-  else if (isSparse(problem))
-    rhs_.head(size) = sparse_->lu.solve(rhs_.head(size));
+  if (isSparse(problem))
+    sparse_->lu.solve(rhs_.head(size));
   else
     lu_.solve(rhs_.head(size));
 }
