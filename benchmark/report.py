@@ -195,8 +195,8 @@ def gauss_seidel(results):
 def profile_times(rows, target):
     """{problem: {solver: seconds}} of what was solved, names of ours, of theirs, that were tried on all problems.
 
-    3D problems only: a solver is not to be blamed for problems it is not made for. Where a solver was measured twice the
-    first row counts.
+    3D problems only: a solver is not to be blamed for problems it is not made for. Where a solver was measured twice
+    the first row counts.
     """
     times, ours, theirs, tried = {}, [], [], {}
     for row in rows:

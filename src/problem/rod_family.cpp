@@ -21,7 +21,7 @@ constexpr double POISSON = 0.5;  ///< incompressible, as hair is taken to be
 constexpr double TIME_STEP = 1e-3;  ///< [s]
 constexpr double JERK = 0.5;  ///< deviation of the change of the support's velocity in the step [m/s, rad/s]
 constexpr int SECTIONS = 16;  ///< a piece
-constexpr int MAX_RODS = 100000;
+constexpr int MAX_OBJECTS = 100000;  ///< rods, contacts
 constexpr int MAX_PIECES = 1000;
 constexpr double PI = 3.14159265358979323846;
 constexpr double AREA = PI * RADIUS * RADIUS;
@@ -236,13 +236,13 @@ std::vector<RodFamilyEntry> table(const std::vector<std::pair<int, int>>& sizes)
 void RodFamilyOptions::validate() const
 {
   constexpr const char* FAMILY = "rod family";
-  requireRange(FAMILY, "rods", rods, 2, MAX_RODS);
+  requireRange(FAMILY, "rods", rods, 2, MAX_OBJECTS);
   requireRange(FAMILY, "pieces", pieces, 1, MAX_PIECES);
-  requireRange(FAMILY, "contacts", contacts, 0, MAX_RODS);
-  requireRange(FAMILY, "friction", friction, 0.0, 1e6);
+  requireRange(FAMILY, "contacts", contacts, 0, MAX_OBJECTS);
+  requireRange(FAMILY, "friction", friction, 0.0, MAX_FRICTION);
   requireRange(FAMILY, "curl", curl, 0.0, 1e6);
   requireRange(FAMILY, "spacing", spacing, 1e-9, 1e6);
-  requireRange(FAMILY, "agitation", agitation, 0.0, 1e9);
+  requireRange(FAMILY, "agitation", agitation, 0.0, MAX_SPEED);
 }
 
 IncrementalProblem rodFamilyProblem(const RodFamilyOptions& options)

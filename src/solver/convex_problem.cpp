@@ -123,7 +123,7 @@ double optimalityError(const ConvexProblem& problem, const Eigen::VectorXd& u, c
     for (int k = 0; k < set.dimension; ++k)
       square += std::pow(scaled[static_cast<std::size_t>(k)] - projected[static_cast<std::size_t>(k)], 2);
     // Not std::max: a NaN must not be lost.
-    if (!(square <= largest))
+    if (!(square <= largest) && !std::isnan(largest))
       largest = square;
   }
   return std::sqrt(largest);

@@ -20,12 +20,12 @@ inline bool eliminate(double* values, int size, int k, int& pivot)
   for (int i = k + 1; i < size; ++i)
     if (std::abs(column[i]) > std::abs(column[pivot]))
       pivot = i;
-  if (!(std::abs(column[pivot]) > 0.0) || !std::isfinite(column[pivot]))
+  const double inverse = 1.0 / column[pivot];
+  if (!std::isfinite(inverse) || !std::isfinite(column[pivot]))
     return false;
   if (pivot != k)
     for (double* entry = values; entry != values + static_cast<std::ptrdiff_t>(size) * size; entry += size)
       std::swap(entry[k], entry[pivot]);
-  const double inverse = 1.0 / column[k];
   for (int i = k + 1; i < size; ++i)
     column[i] *= inverse;
   column[k] = inverse;

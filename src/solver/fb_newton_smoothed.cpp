@@ -66,6 +66,8 @@ bool FbNewtonSmoothed::step(double alpha, double merit)
   steps_.assemble(system_);
   if (steps_.newton(system_, step_) && lineSearch(alpha, merit, options_.line_search_steps))
     return true;
+  if (!options_.least_squares)
+    return false;
   for (double lambda = FIRST_LAMBDA; lambda <= LARGEST_LAMBDA; lambda *= LAMBDA_GROWTH)
   {
     double predicted = 0.0;

@@ -1,9 +1,9 @@
 #include "frictional_contact_sim/solver/fb_system.h"
 
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 
 #include "frictional_contact_sim/math/complementarity_functions.h"
-#include "frictional_contact_sim/solver/sparse_lu.h"
 
 namespace frictional_contact_sim
 {
@@ -101,8 +101,8 @@ struct FbSteps::Sparse
 {
   using Matrix = Eigen::SparseMatrix<double>;
   std::vector<Eigen::Triplet<double>> triplets;
-  SparseLu lu;  ///< of J
-  Matrix normal, identity;
+  Matrix jacobian, normal, identity;
+  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
   Eigen::SimplicialLLT<Matrix> llt;
 };
 
@@ -129,9 +129,8 @@ void FbSteps::assemble(const FbSystem& system)
   for (int i = 0; i < blocks; ++i)
     system.visitJacobian(
         i, [&](int row, int column, double value) { sparse_->triplets.emplace_back(row, column, value); });
-  Sparse::Matrix& jacobian = sparse_->lu.matrix();
-  jacobian.resize(rows, rows);
-  jacobian.setFromTriplets(sparse_->triplets.begin(), sparse_->triplets.end());
+  sparse_->jacobian.resize(rows, rows);
+  sparse_->jacobian.setFromTriplets(sparse_->triplets.begin(), sparse_->triplets.end());
 }
 
 bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
@@ -144,10 +143,10 @@ bool FbSteps::newton(const FbSystem& system, Eigen::VectorXd& d)
   }
   else
   {
-    if (!sparse_->lu.factor())
+    sparse_->lu.compute(sparse_->jacobian);
+    if (sparse_->lu.info() != Eigen::Success)
       return false;
-    d = product_;
-    sparse_->lu.solve(d);
+    d = sparse_->lu.solve(product_);
   }
   return d.allFinite();
 }
@@ -164,9 +163,8 @@ void FbSteps::makeNormal(const FbSystem& system)
     gradient_.noalias() = jacobian_.transpose() * system.value();
     return;
   }
-  const Sparse::Matrix& jacobian = sparse_->lu.matrix();
-  sparse_->normal = Sparse::Matrix(jacobian.transpose()) * jacobian;
-  gradient_ = jacobian.transpose() * system.value();
+  sparse_->normal = Sparse::Matrix(sparse_->jacobian.transpose()) * sparse_->jacobian;
+  gradient_ = sparse_->jacobian.transpose() * system.value();
   // J' J has the pattern of W^2, its factor more.
   dense_normal_ =
       rows <= DENSE_NORMAL_ROWS && static_cast<double>(sparse_->normal.nonZeros()) > DENSE_NORMAL * rows * rows;
@@ -201,7 +199,7 @@ bool FbSteps::leastSquares(const FbSystem& system, double lambda, Eigen::VectorX
   if (dense_)
     product_.noalias() = jacobian_ * d;
   else
-    product_ = sparse_->lu.matrix() * d;
+    product_ = sparse_->jacobian * d;
   predicted = -(system.value().dot(product_) + 0.5 * product_.squaredNorm());
   return d.allFinite();
 }

@@ -95,8 +95,11 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   sweeps.stall_window = STALL_WINDOW;
   sweeps.conjugate = true;
   gauss_seidel_->setOptions(sweeps);
-  last_resort_.push_back(std::make_unique<FbNewtonSmoothed>());
+  FbNewtonSmoothedOptions quick;
+  quick.least_squares = false;
+  last_resort_.push_back(std::make_unique<FbNewtonSmoothed>(quick));
   last_resort_.push_back(std::make_unique<DsNewton>());
+  last_resort_.push_back(std::make_unique<FbNewtonSmoothed>());
   without_factors_.push_back(std::make_unique<Haslinger>());
 }
 
@@ -139,7 +142,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   }
   else
     result.solution.r = best_r_;
-  result.residual = UNKNOWN_RESIDUAL;  // the next method reads u with it
+  result.residual = UNKNOWN_RESIDUAL;  // result.solution.u is not W r + q of this r
   return best_value_ <= stopping().tolerance;
 }
 
@@ -222,7 +225,7 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
   const double power = r.dot(u) - load;
   const double t = power > 0.0 ? std::clamp(-load / power, 0.0, 1.0) : 0.0;
   if (slides && t == 1.0)
-    return false;
+    return false;  // the start of attempt 0 once more
   r *= t;
   u = t * (u - problem.q) + problem.q;
   return true;
@@ -252,7 +255,12 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
 {
   used_ = 0;
   best_r_ = result.solution.r;
-  best_value_ = result.residual >= 0.0 ? result.residual : criterion(problem, best_r_);
+  if (!(result.residual >= 0.0))
+  {
+    result.residual = criterion(problem, best_r_);
+    result.solution.u = velocity_;
+  }
+  best_value_ = result.residual;
   bool done = best_value_ <= stopping().tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
@@ -263,7 +271,6 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
     done = done || tryNewton(*newton_trial_, problem, options_.newton_try_steps, result);
   if (!newton_first)
   {
-    result.residual = UNKNOWN_RESIDUAL;
     done = done || tryHaslinger(problem, result);
     done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
     if (swept && problem.W.rows() >= options_.swept_first_rows)

@@ -15,7 +15,7 @@ namespace
 constexpr double INNER_SHARE = 0.1;
 /// An iterate whose error is below this share of its predecessor's is a better centre than the one so far.
 constexpr double MOVE_SHARE = 0.1;
-/// Up to this many rows a first step is taken without a look at the clock, which costs up to a tenth of it.
+/// Up to this many rows the first step of a call is taken without a look at the clock, which costs up to a tenth of it.
 constexpr int QUICK_ROWS = 30;
 /// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
 constexpr double ZERO_DIAGONAL = 1e-14;
@@ -72,8 +72,8 @@ void SemismoothNewton::prepare(const DelassusProblem& problem)
 {
   const int rows = problem.W.rows();
   const int count = problem.W.blocks();
-  for (Eigen::VectorXd* vector : {&weight_, &u_, &u_alpha_, &f_, &step_, &step_velocity_, &full_r_, &full_u_, &trial_r_,
-                                  &trial_u_})
+  for (Eigen::VectorXd* vector :
+       {&weight_, &u_, &u_alpha_, &f_, &step_, &step_velocity_, &full_r_, &full_u_, &trial_r_, &trial_u_})
     vector->resize(rows);
   rhs_.resize(rows);
   rho_normal_.resize(count);
@@ -235,6 +235,7 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
     problem.W.apply(full_r_, full_u_);
     full_u_ += problem.q;
     value = residual(problem, full_u_, full_r_);
+    keepBest(value, full_r_);
     const double t = value <= stopping().tolerance ? 1.0 : lineSearch(problem, r);
     if (t == 0.0)
       return Inner::FAILED;

@@ -305,6 +305,7 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
     stopping_.tolerance *= std::max(0.3 * tolerance / value.law, 0.01);
     warm_.r = result.solution.r;
     const int iterations = result.iterations;
+    result.iterations = 0;
     result.tried.clear();
     result.solver.clear();
     local_value = solveLocal(local, &warm_, result);

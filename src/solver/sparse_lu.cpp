@@ -29,6 +29,7 @@ struct SparseLu::Workspace
 
   bool isLarge() const { return matrix.cols() > MULTIFRONTAL_ROWS; }
   void analyse();
+  void analyseLarge();
 };
 
 /** Orders the columns for the factorization, when the pattern is not that of the last call. */
@@ -41,14 +42,20 @@ void SparseLu::Workspace::analyse()
   if (std::equal(outer, outer_end, columns.begin(), columns.end()) &&
       std::equal(inner, inner_end, rows.begin(), rows.end()))
     return;
-  columns.assign(outer, outer_end);
-  rows.assign(inner, inner_end);
-  if (!isLarge())
+  columns.clear();  // until the analysis has succeeded: it may throw for want of memory
+  if (isLarge())
+    analyseLarge();
+  else
   {
     supernodal.setPivotThreshold(PIVOT_THRESHOLD);
     supernodal.analyzePattern(matrix);
-    return;
   }
+  rows.assign(inner, inner_end);
+  columns.assign(outer, outer_end);
+}
+
+void SparseLu::Workspace::analyseLarge()
+{
   // The pattern is symmetric and the diagonal strong: an ordering of A + A', pivots from the diagonal where possible.
   auto& control = multifrontal.umfpackControl();
   control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;

@@ -61,6 +61,7 @@ double SweptNewton::sweptStep(const DelassusProblem& problem, const Eigen::Vecto
   swept_.solution.r = r + step_;
   for (int i = 0; i < problem.W.blocks(); ++i)
     projectImpulse(problem.laws[static_cast<std::size_t>(i)], &swept_.solution.r[problem.W.offset(i)]);
+  swept_.residual = UNKNOWN_RESIDUAL;
   delegate(gauss_seidel_, problem, stopping().tolerance, static_cast<int>(sweeps_), swept_);
   return swept_.residual;
 }

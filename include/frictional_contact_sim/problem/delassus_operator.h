@@ -187,7 +187,7 @@ inline Vector<D> DelassusOperator::storedProduct(int i, const Eigen::VectorXd& x
   const double* value = values_.data() + value_begin_[row];
   const int* column = columns_.data() + row_begin_[row];
   const int* const end = columns_.data() + row_begin_[row + 1];
-  for (; column + 1 < end; column += 2, value += 2 * D)
+  for (; end - column >= 2; column += 2, value += 2 * D)
   {
     even += x[column[0]] * Eigen::Map<const Vector<D>>(value);
     odd += x[column[1]] * Eigen::Map<const Vector<D>>(value + D);

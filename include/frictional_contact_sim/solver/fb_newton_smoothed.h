@@ -7,9 +7,9 @@
  *     a few steps  J d = -Phi_alpha,  z <- z + t d,  t by backtracking on 1/2 |Phi_alpha|^2,
  *     until |Phi_alpha| <= inner_share alpha sqrt(rows) or inner_iterations
  * When the Newton step is not finite or gives no decrease, the damped least-squares step (J' J + lambda I) d = -J' Phi
- * replaces it, lambda growing. When that gives none either, down to alpha = 0, the run starts anew from the guess with
- * another first alpha (x and / restart_factor, then its square, ...), at most `restarts` times. For alpha > 0 the
- * function is smooth but for |u_T| in De Saxce's shift.
+ * replaces it, lambda growing (unless least_squares is off). When that gives none either, down to alpha = 0, the run
+ * starts anew from the guess with another first alpha (x and / restart_factor, then its square, ...), at most
+ * `restarts` times. For alpha > 0 the function is smooth but for |u_T| in De Saxce's shift.
  *
  * Source: Cadoux (2009), 4.2.3 (approach by regularisation); Fukushima, Luo, Tseng (2002); Hayashi, Yamashita,
  * Fukushima (2005). Departure: new starts.
@@ -27,6 +27,7 @@ struct FbNewtonSmoothedOptions
   double smoothing_decrease = 0.5;  ///< factor on alpha [-], in (0, 1)
   double inner_share = 0.1;  ///< inner tolerance over alpha, per row [-], > 0
   int inner_iterations = 15;  ///< steps an alpha, >= 1
+  bool least_squares = true;  ///< false: a failed Newton step is followed by the next alpha at once
   int restarts = 4;  ///< new starts when no step decreases the merit, >= 0
   double restart_factor = 5.0;  ///< on the first alpha of a new start [-], > 1
   int line_search_steps = 12;  ///< halvings of t, >= 0

@@ -13,10 +13,14 @@ namespace frictional_contact_sim
 class OuterLoop
 {
 public:
-  /** @param window iterations without the best residual falling by a tenth that count as a stall; no rule by default */
+  /**
+   * @brief The result's residual becomes unknown: u of a loop's iterates is not always W r + q to the last bit.
+   * @param window iterations without the best residual falling by a tenth that count as a stall; no rule by default
+   */
   OuterLoop(double tolerance, SolverResult& result, int window = std::numeric_limits<int>::max())
     : tolerance_(tolerance), result_(result), window_(window)
   {
+    result.residual = UNKNOWN_RESIDUAL;
   }
 
   /**

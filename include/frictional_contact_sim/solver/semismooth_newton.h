@@ -6,15 +6,15 @@
  *   outer   centre c = r,  u_alpha(r) = W r + q + alpha D (r - c),   D = diag(1/rho_i)
  *   inner   (A (W + alpha D) + B) dr = -f(u_alpha, r),   A = df/du, B = df/dr block-diagonal
  *           r <- r + t dr, t by a nonmonotone backtracking (Grippo, Lampariello, Lucidi 1986) on 1/2 |Phi/rho|^2,
- *           and the full step where no t decreases it (a watchdog: the inner budget ends a bad excursion)
+ *           and the full step where no t decreases it (a watchdog: the inner budget ends a bad excursion) or where it
+ *           meets the tolerance
  *   c <- r and alpha <- alpha / 10 once the inner error is a tenth of the proximal perturbation |alpha D (r - c)|, or
  *   when a step makes the error ten times smaller; alpha x 5 (at least proximal_restart) and back to c after a failure
  * alpha [-] is relative to the Delassus entries. With rigid bodies A W + B is singular as a rule (Cadoux (2009),
  * D.1.4); alpha D makes it regular, and the limit of the proximal iteration from a centre is, among the solutions, one
  * near it: near zero for a cold start, near the last step's impulses for a warm one. Contacts predicted open are
  * eliminated before the factorization: their impulse goes to zero. Dense LU with partial pivoting up to DENSE_LIMIT
- * active rows, sparse LU beyond, UMFPACK for large systems (both allocate), the ordering reused while the set of active
- * rows stays.
+ * active rows, solver/sparse_lu.h beyond, the ordering reused while the set of active rows stays.
  *
  * The contact function is an argument: Alart-Curnier (ac_newton) here, others are one ContactMap each.
  * Source: Alart, Curnier (1991); Cadoux (2009), 4.2, 4.3, appendix D; Acary, Bremond, Huber (2018), section on the
