@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "frictional_contact_sim/solver/one_contact.h"
+#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -35,15 +35,10 @@ double updateContact(const DelassusProblem& problem, int i, double relaxation, E
 
 void GaussSeidelOptions::validate() const
 {
-  if (check_interval < 1)
-    throw std::invalid_argument("gauss_seidel.check_interval is " + std::to_string(check_interval) + ", expected >= 1");
-  if (stall_window < 0)
-    throw std::invalid_argument("gauss_seidel.stall_window is " + std::to_string(stall_window) + ", expected >= 0");
-  if (!(stall_factor > 0.0 && stall_factor < 1.0))
-    throw std::invalid_argument("gauss_seidel.stall_factor is " + std::to_string(stall_factor) +
-                                ", expected in (0, 1)");
-  if (!(relaxation > 0.0 && relaxation < 2.0))
-    throw std::invalid_argument("gauss_seidel.relaxation is " + std::to_string(relaxation) + ", expected in (0, 2)");
+  requireOption(check_interval >= 1, "gauss_seidel.check_interval", check_interval, ">= 1");
+  requireOption(stall_window >= 0, "gauss_seidel.stall_window", stall_window, ">= 0");
+  requireOption(stall_factor > 0.0 && stall_factor < 1.0, "gauss_seidel.stall_factor", stall_factor, "in (0, 1)");
+  requireOption(relaxation > 0.0 && relaxation < 2.0, "gauss_seidel.relaxation", relaxation, "in (0, 2)");
 }
 
 GaussSeidel::GaussSeidel(const GaussSeidelOptions& options) : Solver("gauss_seidel"), options_(options)

@@ -7,6 +7,7 @@
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "island_workspace.h"
+#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -90,12 +91,9 @@ const char* toString(SolverStatus status)
 
 void StoppingOptions::validate() const
 {
-  if (!(tolerance > 0.0) || !std::isfinite(tolerance))
-    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) + ", expected a finite number > 0");
-  if (max_iterations < 0)
-    throw std::invalid_argument("max_iterations is " + std::to_string(max_iterations) + ", expected >= 0");
-  if (!(time_limit >= 0.0))
-    throw std::invalid_argument("time_limit is " + std::to_string(time_limit) + ", expected >= 0");
+  requireOption(tolerance > 0.0 && std::isfinite(tolerance), "tolerance", tolerance, "a finite number > 0");
+  requireOption(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  requireOption(time_limit >= 0.0, "time_limit", time_limit, ">= 0");
 }
 
 Solver::Solver(std::string name)

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <string>
 
 #include "frictional_contact_sim/simulation/simulator.h"
@@ -48,10 +47,7 @@ TEST_P(RobotTest, RunsTwoSecondsWithoutAFailedStep)
 {
   const RobotCase& robot = GetParam();
   if (!std::filesystem::exists(robot.path))
-  {
-    std::cout << "no " << robot.path << ": published robots are tested only where ../shared is there\n";
-    GTEST_SKIP();
-  }
+    GTEST_SKIP() << "no " << robot.path << ": published robots are tested only where ../shared is there";
   setenv("ROS_PACKAGE_PATH", SHARED_ROBOTS.c_str(), 1);
   Scenario scene = groundScene(0.8);
   scene.stopping.tolerance = 1e-8;

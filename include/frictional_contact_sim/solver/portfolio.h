@@ -11,10 +11,10 @@
  *      Newton from where they ended; from swept_first_rows on Newton steps each followed by sweeps
  *      (solver/swept_newton.h) between the two, above newton_last_rows in place of Newton
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
- *      Fischer-Burmeister Newton, De Saxce's and the smoothed one with its damped steps, each a dense factorization or
- *      worse, in longer rounds; above newton_last_rows instead of these Newtons
- *      Haslinger's fixed point, which needs products with W only; on more than few rows Newton with sweeps,
- *      before it above newton_last_rows, else at the end of a round; above swept_last_rows nothing is factored
+ *      Fischer-Burmeister Newton, De Saxce's and the smoothed one with its damped steps, each of which factors J' J, in
+ *      longer rounds; above newton_last_rows instead of these Newtons Haslinger's fixed point, which needs products
+ *      with W only; on more than few rows Newton with sweeps, before it above newton_last_rows, else at the end of a
+ *      round; above swept_last_rows nothing is factored
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
