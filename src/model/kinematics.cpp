@@ -137,16 +137,17 @@ void forwardKinematics(const MultibodyModel& model, const VectorIn& q, Multibody
   }
   const Joint& root = model.joints[0];
   // The root's own joint decides where the reference is before any lever arm is taken about it.
-  data.reference = root.placement.translation();
+  data.reference = data.base_pose.translation();
   if (root.type == JointType::FLOATING)
   {
-    data.reference += root.placement.linear() * q.segment<3>(root.q_index);
+    data.reference += data.base_pose.linear() * q.segment<3>(root.q_index);
   }
   for (std::size_t i = 0; i < model.bodies.size(); ++i)
   {
     const Joint& joint = model.joints[i];
-    Eigen::Matrix3d frame = joint.placement.linear();
-    Eigen::Vector3d origin = joint.placement.translation();
+    const Eigen::Isometry3d& placement = i == 0 ? data.base_pose : joint.placement;
+    Eigen::Matrix3d frame = placement.linear();
+    Eigen::Vector3d origin = placement.translation();
     if (joint.parent >= 0)
     {
       const Eigen::Isometry3d& parent = data.body_pose[joint.parent];

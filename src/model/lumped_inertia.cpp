@@ -22,7 +22,7 @@ Eigen::Vector3d principalMoments(const RigidInertia& inertia)
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia.rotational, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-std::string describe(const Body& body)
+std::string describe(const Link& body)
 {
   const Eigen::Vector3d moments = principalMoments(body.inertia);
   std::ostringstream text;
@@ -120,7 +120,7 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
     {
       continue;
     }
-    const Body& body = model.bodies[i];
+    const Link& body = model.bodies[i];
     if (!body.inertia.rotational.allFinite() || !body.inertia.center.allFinite() || !std::isfinite(body.inertia.mass))
     {
       failAt(source, 0, "link '" + body.name + "' (with the links fixed to it): mass or inertia overflows");

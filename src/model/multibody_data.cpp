@@ -3,7 +3,8 @@
 namespace frictional_contact_sim
 {
 MultibodyData::MultibodyData(const MultibodyModel& model)
-  : body_pose(model.bodies.size(), Eigen::Isometry3d::Identity())
+  : base_pose(model.joints.empty() ? Eigen::Isometry3d::Identity() : model.joints.front().placement)
+  , body_pose(model.bodies.size(), Eigen::Isometry3d::Identity())
   , motion_subspace(Matrix6Xd::Zero(6, model.nv))
   , body_inertia(model.bodies.size())
   , body_velocity(model.bodies.size(), Vector6d::Zero())

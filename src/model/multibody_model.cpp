@@ -72,7 +72,7 @@ int MultibodyModel::findFrame(const std::string& link_name) const
 double MultibodyModel::totalMass() const
 {
   double mass = 0.0;
-  for (const Body& body : bodies)
+  for (const Link& body : bodies)
   {
     mass += body.inertia.mass;
   }

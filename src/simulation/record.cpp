@@ -1,96 +1,55 @@
-// After the solve: contacts, joint impulses, report.
+// After the solve: outcome, report, dump.
 #include <algorithm>
-#include <cmath>
+#include <map>
+#include <mutex>
 #include <numeric>
 
 #include "frictional_contact_sim/problem/fclib.h"
-#include "frictional_contact_sim/problem/law_functions.h"
-#include "frictional_contact_sim/simulation/energy.h"
 #include "simulator_impl.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-/** Relative to its cone: nearer to the boundary than this is on it, when the contact also moves. */
-constexpr double STICKING_SPEED = 1e-9;  ///< [m/s]
+constexpr int MOST_DUMPS = 20;  ///< problems of one simulation: the first ones say what is wrong
 
-ContactMode modeOf(const ContactRow& row, const Eigen::Vector3d& impulse, const Eigen::Vector3d& velocity,
-                   double tolerance)
+/** `prefix`, with a number where another simulator of this process dumps there already. */
+std::string uniquePrefix(const std::string& prefix)
 {
-  // What the solver calls zero, in units of this contact: tolerance times its own velocity or impulse, at least 1e-9.
-  const double speed = std::max(STICKING_SPEED, 10.0 * tolerance * velocity.norm());
-  if (impulse[0] <= 0.0)
-    return ContactMode::OPEN;
-  if (row.closing)
-    return ContactMode::IMPACT;
-  const double margin = row.friction * impulse[0] - impulse.tail<2>().norm();
-  const bool inside = margin > 1e-6 * row.friction * impulse[0];
-  return inside || velocity.tail<2>().norm() <= speed ? ContactMode::STICKING : ContactMode::SLIDING;
+  static std::mutex mutex;
+  static std::map<std::string, int> users;
+  const std::lock_guard<std::mutex> lock(mutex);
+  const int user = ++users[prefix];
+  return user == 1 ? prefix : prefix + "_run_" + std::to_string(user);
 }
 }  // namespace
 
-void Simulator::Impl::finishStep(const std::vector<ContactPoint>& points)
+void Simulator::Impl::finishStep()
 {
-  storeContacts(points);
-  storeJointImpulses();
+  ++state.step;
   storeReport();
+  storeOutcome();
 }
 
-void Simulator::Impl::storeContacts(const std::vector<ContactPoint>& points)
+void Simulator::Impl::storeOutcome()
 {
-  contacts.clear();
-  contact_index.clear();
-  for (const ContactRow& row : assembly.contactRows())
+  outcome.status = result.status;
+  outcome.residual = result.residual;
+  outcome.message = result.message;
+  if (result.status == SolverStatus::CONVERGED)
   {
-    const ContactPoint& point = points[row.point];
-    const Eigen::Vector3d r = result.solution.r.segment<3>(row.row);
-    Eigen::Vector3d u = result.solution.u.segment<3>(row.row);
-    u[0] -= row.shift;
-    if (row.creep.compliance > 0.0)
-      u[1] -= row.creep.compliance * r[1] + row.creep.offset;
-    ContactState state;
-    state.id = point.id;
-    state.shape_a = point.shape_a;
-    state.shape_b = point.shape_b;
-    state.position = point.position;
-    state.normal = point.normal;
-    state.tangent_1 = row.tangent_1;
-    state.tangent_2 = row.tangent_2;
-    state.gap = point.gap;
-    state.friction = row.friction;
-    state.restitution = row.restitution;
-    state.impulse = r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2;
-    state.velocity = u[0] * point.normal + u[1] * row.tangent_1 + u[2] * row.tangent_2;
-    state.cone_margin = row.friction * r[0] - r.tail<2>().norm();
-    const auto law = static_cast<Eigen::Index>(contacts.size());  // contacts are the first laws, in this order
-    if (isMotion(result.solution) && law < solver->stepLengths().size())
-      state.residual = naturalMapError(assembly.problem().laws[law], result.solution.u.data() + row.row,
-                                       result.solution.r.data() + row.row, solver->stepLengths()[law]);
-    state.mode = modeOf(row, r, u, scenario.stopping.tolerance);
-    contact_index.emplace_back(state.id, static_cast<int>(contacts.size()));
-    contacts.push_back(state);
+    outcome.message.clear();
+    outcome.fclib_file.clear();
   }
-  std::sort(contact_index.begin(), contact_index.end());
-}
-
-void Simulator::Impl::storeJointImpulses()
-{
-  for (std::vector<std::array<double, 4>>& robot : joint_impulses)
-    for (std::array<double, 4>& joint : robot)
-      joint.fill(0.0);
-  for (const JointRow& row : assembly.jointRows())
-    joint_impulses[row.robot][row.joint][static_cast<int>(row.kind)] = result.solution.r[row.row];
-  guess.lambda = result.solution.lambda;
 }
 
 void Simulator::Impl::storeReport()
 {
   const IncrementalProblem& problem = assembly.problem();
-  ++report.step;
-  report.time = time;
-  report.dt = settings.dt;
-  report.contacts = static_cast<int>(contacts.size());
+  report.step = state.step;
+  report.time = state.time();
+  report.dt = context.dt;
+  report.contacts = static_cast<int>(state.rows.contacts.size());
   report.velocities = assembly.velocities();
   report.bilaterals = problem.bilaterals();
   report.islands = countIslands();
@@ -106,58 +65,65 @@ void Simulator::Impl::storeReport()
   report.iterations = result.iterations;
   report.residual = result.residual;
   report.solve_time = result.seconds;
-  report.bilateral_violation = 0.0;
-  for (int k = 0; k < problem.bilaterals(); ++k)
-    report.bilateral_violation = std::max(report.bilateral_violation, std::abs(problem.b[k]) * settings.dt);
+  report.bilateral_violation = assembly.bilateralViolation();
   report.max_penetration = 0.0;
-  for (const ContactState& contact : contacts)
+  for (const ContactState& contact : state.rows.contacts)
     report.max_penetration = std::max(report.max_penetration, -contact.gap);
-  bookEnergies(world.robots, settings.gravity, report.energy);
-  EnergyLedger& energy = report.energy;
-  energy.balance_error = energy.kinetic + energy.potential - energy_start - energy.actuators + energy.friction +
+  bookEnergies();
+  EnergyLedger& energy = state.energy;
+  energy.balance_error = energy.kinetic + energy.potential - state.energy_start - energy.actuators + energy.friction +
                          energy.impact + energy.joints;
-  if (!step_failed)
-    report.fclib_file.clear();
+  report.energy = energy;
+  report.fclib_file = result.status == SolverStatus::CONVERGED ? "" : outcome.fclib_file;
 }
 
-/** Connected components of robots through contacts with a nonempty row. */
+/** Connected components of bodies through contacts with a nonempty row. */
 int Simulator::Impl::countIslands()
 {
   std::iota(island_of.begin(), island_of.end(), 0);
-  const auto root = [this](int robot)
+  const auto root = [this](int body)
   {
-    while (island_of[robot] != robot)
-      robot = island_of[robot] = island_of[island_of[robot]];
-    return robot;
+    while (island_of[body] != body)
+      body = island_of[body] = island_of[island_of[body]];
+    return body;
   };
-  for (const ContactState& contact : contacts)
+  for (const ContactState& contact : state.rows.contacts)
   {
-    const int a = world.collision.shape(contact.shape_a).robot;
-    const int b = world.collision.shape(contact.shape_b).robot;
-    if (a >= 0 && b >= 0 && world.robots[a].model.nv > 0 && world.robots[b].model.nv > 0)
+    const int a = collision.shape(contact.shape_a).robot;
+    const int b = collision.shape(contact.shape_b).robot;
+    if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
       island_of[root(a)] = root(b);
   }
   int islands = 0;
-  for (size_t r = 0; r < island_of.size(); ++r)
-    islands += world.robots[r].model.nv > 0 && root(static_cast<int>(r)) == static_cast<int>(r);
+  for (size_t b = 0; b < island_of.size(); ++b)
+    islands += bodies[b].model.tree.nv > 0 && root(static_cast<int>(b)) == static_cast<int>(b);
   return islands;
 }
 
 void Simulator::Impl::dumpProblem()
 {
-  report.fclib_file = dump_folder + "/" + scenario.name + "_step_" + std::to_string(report.step + 1) + ".hdf5";
+  if (dumps >= MOST_DUMPS)
+  {
+    outcome.fclib_file = "not written: " + std::to_string(MOST_DUMPS) + " files of this run are there";
+    return;
+  }
+  ++dumps;
+  const std::string step = context.impact ? "start" : "step_" + std::to_string(state.step + 1);
+  if (dump_name.empty())
+    dump_name = uniquePrefix(dump_folder + "/" + scenario.name);
+  outcome.fclib_file = dump_name + "_" + step + ".hdf5";
   try
   {
     FclibInfo info;
-    info.title = scenario.name + " step " + std::to_string(report.step + 1);
+    info.title = scenario.name + " " + step;
     info.description =
         "w contains the shift of the normal law (gap/dt, restitution); bounded servos and dry joint "
         "friction are encoded as problem/fclib.h says";
-    writeFclib(report.fclib_file, assembly.problem(), info);
+    writeFclib(outcome.fclib_file, assembly.problem(), info);
   }
   catch (const std::exception& error)
   {
-    report.fclib_file = std::string("not written: ") + error.what();
+    outcome.fclib_file = std::string("not written: ") + error.what();
   }
 }
 

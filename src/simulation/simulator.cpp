@@ -1,14 +1,13 @@
 #include "frictional_contact_sim/simulation/simulator.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
+#include "frictional_contact_sim/dynamics/row_sources.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
-#include "frictional_contact_sim/simulation/energy.h"
+#include "frictional_contact_sim/simulation/state_archive.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "simulator_impl.h"
 
@@ -16,52 +15,70 @@ namespace frictional_contact_sim
 {
 namespace
 {
-StepSettings makeSettings(const Scenario& scenario)
+StepContext makeContext(const Scenario& scenario)
 {
-  StepSettings settings;
-  settings.dt = scenario.time_step;
-  settings.gravity = scenario.gravity;
-  settings.normal_law.form = scenario.contact_law;
+  StepContext context;
+  context.dt = scenario.time_step;
+  context.gravity = scenario.gravity;
+  context.tolerance = scenario.stopping.tolerance;
+  context.normal_law.form = scenario.contact_law;
   // An approach slower than what gravity gives in one step is rest, not an impact.
-  settings.normal_law.closing_speed = std::max(1e-9, scenario.gravity.norm() * scenario.time_step);
-  return settings;
+  context.normal_law.closing_speed = std::max(1e-9, scenario.gravity.norm() * scenario.time_step);
+  return context;
 }
 
-void checkScenario(const Scenario& scenario)
+SimulationState makeState(const WorldModel& world)
 {
-  if (!(scenario.time_step > 0.0) || !std::isfinite(scenario.time_step))
-    throw std::invalid_argument("time_step is " + std::to_string(scenario.time_step) +
-                                ", expected a positive finite number of seconds");
-  if (!scenario.gravity.allFinite())
-    throw std::invalid_argument("gravity has a component that is not finite");
-  scenario.stopping.validate();
+  SimulationState state;
+  state.dt = world.scenario.time_step;
+  state.bodies = world.start;
+  return state;
+}
+
+std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
+{
+  std::vector<Body> bodies;
+  bodies.reserve(world.bodies.size());
+  for (size_t b = 0; b < world.bodies.size(); ++b)
+    bodies.emplace_back(world.bodies[b], state.bodies[b]);
+  return bodies;
+}
+
+bool sameShape(const SimulationState& a, const SimulationState& b)
+{
+  const auto same_body = [](const BodyState& x, const BodyState& y)
+  { return x.q.size() == y.q.size() && x.v.size() == y.v.size() && x.drives.size() == y.drives.size(); };
+  const auto same_memory = [](const RowMemory& x, const RowMemory& y)
+  { return x.name == y.name && x.impulses.size() == y.impulses.size(); };
+  return std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same_body) &&
+         std::equal(a.rows.memory.begin(), a.rows.memory.end(), b.rows.memory.begin(), b.rows.memory.end(),
+                    same_memory);
 }
 }  // namespace
 
-Simulator::Impl::Impl(const Scenario& description)
-  : scenario((checkScenario(description), description))
-  , world(loadWorld(scenario))
-  , settings(makeSettings(scenario))
-  , assembly(world.robots, world.collision, world.pairs)
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
+  : world(std::move(world_model))
+  , scenario(world->scenario)
+  , collision(world->collision)
+  , state(makeState(*world))
+  , bodies(makeBodies(*world, state))
+  , context(makeContext(scenario))
+  , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows), state.rows)
   , solver(createSolver(scenario.solver))
-  , island_of(world.robots.size())
+  , island_of(bodies.size())
 {
   solver->setStopping(scenario.stopping);
-  for (const Robot& robot : world.robots)
-  {
-    q_initial.push_back(robot.q);
-    v_initial.push_back(robot.v);
-    base_initial.push_back(robot.base_pose);
-    joint_impulses.emplace_back(robot.model.joints.size(), std::array<double, 4>{});
-  }
   applyState();
+  start = state;
+  start_outcome = outcome;
 }
 
-Simulator::Simulator(const Scenario& scenario)
+Simulator::Simulator(const Scenario& scenario) : Simulator(loadWorldModel(scenario))
 {
-  const auto start = std::chrono::steady_clock::now();
-  impl_ = std::make_unique<Impl>(scenario);
-  impl_->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Simulator::Simulator(std::shared_ptr<const WorldModel> world) : impl_(std::make_unique<Impl>(std::move(world)))
+{
 }
 
 Simulator::~Simulator() = default;
@@ -69,88 +86,144 @@ Simulator::~Simulator() = default;
 /** The state as it stands in q and v becomes the state: impact solve, warm starts dropped, ledger anew. */
 void Simulator::Impl::applyState()
 {
-  contacts.clear();
-  contact_index.clear();
-  guess.lambda.resize(0);
-  for (std::vector<std::array<double, 4>>& robot : joint_impulses)
-    for (std::array<double, 4>& joint : robot)
-      joint.fill(0.0);
-  for (Robot& robot : world.robots)
-  {
-    for (Actuator& actuator : robot.actuators)
-      actuator.effort = 0.0;
-    updateEnd(robot);
-  }
+  state.rows.contacts.clear();
+  for (RowMemory& memory : state.rows.memory)
+    std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
+  for (BodyState& body : state.bodies)
+    for (JointDrive& drive : body.drives)
+      drive.effort = 0.0;
+  updateEnds();
   restartLedger();
   impactSolve();
 }
 
+void Simulator::Impl::updateEnds()
+{
+  for (Body& body : bodies)
+    updateEnd(body);
+}
+
+void Simulator::Impl::bookEnergies()
+{
+  state.energy.kinetic = 0.0;
+  state.energy.potential = 0.0;
+  for (const Body& body : bodies)
+  {
+    if (body.model.tree.nv == 0)
+      continue;
+    state.energy.kinetic += kineticEnergy(body.model.tree, body.end);
+    state.energy.potential += potentialEnergy(body.model.tree, body.end, context.gravity);
+  }
+  report.energy = state.energy;
+}
+
 void Simulator::Impl::restartLedger()
 {
-  report.energy = EnergyLedger{};
-  bookEnergies(world.robots, settings.gravity, report.energy);
-  energy_start = report.energy.kinetic + report.energy.potential;
+  state.energy = EnergyLedger{};
+  bookEnergies();
+  state.energy_start = state.energy.kinetic + state.energy.potential;
 }
 
 void Simulator::Impl::impactSolve()
 {
-  for (size_t r = 0; r < world.robots.size(); ++r)
+  outcome = StepOutcome{};
+  for (size_t b = 0; b < bodies.size(); ++b)
   {
-    Robot& robot = world.robots[r];
-    forwardKinematics(robot.model, robot.q, robot.middle);
-    computeMassMatrix(robot.model, robot.middle);
-    world.collision.setPoses(static_cast<int>(r), robot.middle);
+    Body& body = bodies[b];
+    body.middle.base_pose = body.state.base_pose;
+    forwardKinematics(body.model.tree, body.state.q, body.middle);
+    computeMassMatrix(body.model.tree, body.middle);
+    collision.setPoses(static_cast<int>(b), body.middle);
   }
-  const std::vector<ContactPoint>& points = world.collision.detect(2.0 * CONTACT_GAP);
-  assembly.assembleImpact(points);
-  const bool closing = std::any_of(assembly.contactRows().begin(), assembly.contactRows().end(),
-                                   [](const ContactRow& row) { return row.closing; }) ||
-                       std::any_of(assembly.jointRows().begin(), assembly.jointRows().end(),
-                                   [this](const JointRow& row)
-                                   {
-                                     const Robot& robot = world.robots[row.robot];
-                                     const double velocity = robot.v[robot.velocityIndex(row.joint)];
-                                     return row.kind == JointRow::Kind::LOWER_LIMIT ? velocity < 0.0 : velocity > 0.0;
-                                   });
-  if (!closing)
-    return;
-  makeGuess(points);
-  guess.r.setZero();
-  solve();
-  if (!isMotion(result.solution))
-    return;
-  for (Robot& robot : world.robots)
-    robot.v_middle = 0.5 * (robot.v + result.solution.v.segment(robot.v_offset, robot.model.nv));
-  bookWork(assembly, world.robots, result.solution, settings.dt, true, report.energy);
-  for (Robot& robot : world.robots)
+  context.impact = true;
+  context.points = &collision.detect(2.0 * CONTACT_GAP);
+  assembly.begin(context);
+  assembly.assembleRows(context);
+  if (assembly.closing())
   {
-    robot.v = result.solution.v.segment(robot.v_offset, robot.model.nv);
-    updateEnd(robot);
+    assembly.makeGuess(context, guess);
+    assembly.assembleDynamics(context, guess);
+    solve();
+    if (result.status != SolverStatus::CONVERGED && !dump_folder.empty())
+      dumpProblem();
+    storeOutcome();
+    if (isMotion(result.solution))
+    {
+      assembly.setMeanVelocity(result.solution);
+      assembly.book(context, result.solution, state.energy);
+      for (Body& body : bodies)
+        body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
+      updateEnds();
+      bookEnergies();
+    }
   }
-  bookEnergies(world.robots, settings.gravity, report.energy);
+  context.impact = false;
 }
 
-void Simulator::reset()
+const StepOutcome& Simulator::reset()
 {
-  for (size_t r = 0; r < impl_->world.robots.size(); ++r)
-  {
-    Robot& robot = impl_->world.robots[r];
-    robot.q = impl_->q_initial[r];
-    robot.v = impl_->v_initial[r];
-    robot.base_pose = impl_->base_initial[r];
-    robot.model.joints.front().placement = robot.base_pose;
-  }
-  impl_->applyState();
+  SimulationState& state = impl_->state;
+  state.bodies = impl_->start.bodies;
+  state.rows = impl_->start.rows;
+  state.energy = impl_->start.energy;
+  state.energy_start = impl_->start.energy_start;
+  state.scenario_clock = StepClock{};
+  impl_->updateEnds();
+  impl_->bookEnergies();
+  impl_->outcome = impl_->start_outcome;
+  return impl_->outcome;
 }
 
 void Simulator::resetTime()
 {
-  impl_->time = 0.0;
+  impl_->state.clock = StepClock{};
 }
 
-void Simulator::stateChanged()
+void Simulator::setTimeStep(double dt)
+{
+  if (!(dt > 0.0) || !std::isfinite(dt))
+    throw std::invalid_argument("time_step is " + std::to_string(dt) +
+                                ", expected a positive finite number of seconds");
+  SimulationState& state = impl_->state;
+  for (StepClock* clock : {&state.clock, &state.scenario_clock})
+    clock->restart(clock->time(state.dt));
+  state.dt = dt;
+  impl_->scenario.time_step = dt;
+  impl_->context = makeContext(impl_->scenario);
+}
+
+const SimulationState& Simulator::state() const
+{
+  return impl_->state;
+}
+
+const StepOutcome& Simulator::setState(const SimulationState& state)
+{
+  if (!sameShape(state, impl_->state))
+    throw StateError("the state's bodies or joints differ in number from the simulator's");
+  const double dt = impl_->state.dt;
+  impl_->state = state;
+  impl_->updateEnds();
+  impl_->report = StepSummary{};
+  impl_->bookEnergies();
+  impl_->report.step = state.step;
+  impl_->report.time = state.time();
+  impl_->report.dt = dt;
+  if (state.dt != dt)
+    setTimeStep(dt);
+  impl_->outcome = StepOutcome{};
+  return impl_->outcome;
+}
+
+const StepOutcome& Simulator::stateChanged()
 {
   impl_->applyState();
+  return impl_->outcome;
+}
+
+const StepOutcome& Simulator::outcome() const
+{
+  return impl_->outcome;
 }
 
 const StepSummary& Simulator::report() const
@@ -160,17 +233,27 @@ const StepSummary& Simulator::report() const
 
 const std::vector<ContactState>& Simulator::contacts() const
 {
-  return impl_->contacts;
+  return impl_->state.rows.contacts;
 }
 
 const ShapeInfo& Simulator::shape(int handle) const
 {
-  return impl_->world.collision.shape(handle);
+  return impl_->collision.shape(handle);
+}
+
+int Simulator::shapeCount() const
+{
+  return impl_->collision.shapeCount();
+}
+
+std::uint64_t Simulator::stateHash() const
+{
+  return hashOf(impl_->state);
 }
 
 double Simulator::time() const
 {
-  return impl_->time;
+  return impl_->state.time();
 }
 
 const Scenario& Simulator::scenario() const
@@ -180,91 +263,88 @@ const Scenario& Simulator::scenario() const
 
 const std::vector<std::string>& Simulator::warnings() const
 {
-  return impl_->world.warnings;
+  return impl_->world->warnings;
 }
 
 double Simulator::loadingSeconds() const
 {
-  return impl_->loading_seconds;
+  return impl_->world->loading_seconds;
 }
 
 int Simulator::bodyCount() const
 {
-  return static_cast<int>(impl_->world.robots.size());
+  return static_cast<int>(impl_->bodies.size());
 }
 
 const std::string& Simulator::bodyName(int body) const
 {
-  return impl_->world.robots[body].name;
+  return impl_->bodies[body].model.name;
 }
 
 const MultibodyModel& Simulator::model(int body) const
 {
-  return impl_->world.robots[body].model;
+  return impl_->bodies[body].model.tree;
 }
 
 const MultibodyData& Simulator::data(int body) const
 {
-  return impl_->world.robots[body].end;
+  return impl_->bodies[body].end;
 }
 
 Eigen::VectorXd& Simulator::position(int body)
 {
-  return impl_->world.robots[body].q;
+  return impl_->state.bodies[body].q;
 }
 
 const Eigen::VectorXd& Simulator::position(int body) const
 {
-  return impl_->world.robots[body].q;
+  return impl_->state.bodies[body].q;
 }
 
 Eigen::VectorXd& Simulator::velocity(int body)
 {
-  return impl_->world.robots[body].v;
+  return impl_->state.bodies[body].v;
 }
 
 const Eigen::VectorXd& Simulator::velocity(int body) const
 {
-  return impl_->world.robots[body].v;
+  return impl_->state.bodies[body].v;
 }
 
 double Simulator::effort(int body, int joint) const
 {
-  return impl_->world.robots[body].actuators[joint].effort;
+  return impl_->state.bodies[body].drives[joint].effort;
 }
 
 void Simulator::setCommand(int body, int joint, const JointCommand& command)
 {
-  Robot& robot = impl_->world.robots[body];
-  const double effort = robot.actuators[joint].effort;
-  robot.actuators[joint] = makeActuator(robot, joint, command);
-  robot.actuators[joint].effort = effort;
+  JointDrive& drive = impl_->state.bodies[body].drives[joint];
+  const double effort = drive.effort;
+  drive = makeDrive(impl_->bodies[body].model, joint, command);
+  drive.effort = effort;
 }
 
 const JointCommand& Simulator::command(int body, int joint) const
 {
-  return impl_->world.robots[body].actuators[joint].command;
+  return impl_->state.bodies[body].drives[joint].command;
 }
 
 void Simulator::addWrench(int body, const ExternalWrench& wrench)
 {
-  Robot& robot = impl_->world.robots[body];
-  const int frame = robot.model.findFrame(wrench.link);
+  const BodyModel& model = impl_->bodies[body].model;
+  const int frame = model.tree.findFrame(wrench.link);
   if (frame < 0)
-    throw std::invalid_argument("body '" + robot.name + "' has no link '" + wrench.link + "'");
+    throw std::invalid_argument("body '" + model.name + "' has no link '" + wrench.link + "'");
   if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite())
     throw std::invalid_argument("wrench on link '" + wrench.link + "' has a component that is not finite");
-  robot.wrenches.push_back(wrench);
-  robot.wrench_frames.push_back(frame);
+  impl_->state.bodies[body].wrenches.push_back(wrench);
+  impl_->state.bodies[body].wrenches.back().frame = frame;
 }
 
 void Simulator::clearWrenches()
 {
-  for (Robot& robot : impl_->world.robots)
-  {
-    robot.wrenches.clear();
-    robot.wrench_frames.clear();
-  }
+  for (BodyState& body : impl_->state.bodies)
+    body.wrenches.clear();
 }
 
 void Simulator::setSolver(const std::string& name)
@@ -283,6 +363,7 @@ void Simulator::setFailurePolicy(FailurePolicy policy)
 void Simulator::setDumpFolder(const std::string& folder)
 {
   impl_->dump_folder = folder;
+  impl_->dump_name.clear();
 }
 
 const IncrementalProblem& Simulator::problem() const

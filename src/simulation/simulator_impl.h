@@ -1,41 +1,34 @@
 #pragma once
-// The simulator's state and the parts of a step; see simulator.h.
-#include <array>
+// What a simulator is made of, and the parts of a step; see simulator.h.
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
 #include "frictional_contact_sim/simulation/simulator.h"
-#include "frictional_contact_sim/simulation/world.h"
+#include "frictional_contact_sim/simulation/state.h"
+#include "frictional_contact_sim/simulation/world_model.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
 {
 struct Simulator::Impl
 {
-  explicit Impl(const Scenario& description);
+  explicit Impl(std::shared_ptr<const WorldModel> world_model);
 
   // the step, in this order
   void moveToMidpoint();
   double lookAhead() const;
-  void prepareActuators();
-  void guessCreep(const std::vector<ContactPoint>& points);
-  void solveStep(const std::vector<ContactPoint>& points);
+  void solveStep();
   void advance();
-  void finishStep(const std::vector<ContactPoint>& points);
+  void finishStep();
 
-  /** Last contact of the same id, or nullptr where there was none or it was an impact. */
-  const ContactState* lastContact(std::uint64_t id) const;
-  void makeGuess(const std::vector<ContactPoint>& points);
-  bool boundOverloadedServos();
   /** Finite, and slower than anything that moves. */
   static bool isMotion(const Solution& solution);
   void solve();
+  void fail(SolverStatus status, const std::string& message);
   bool handleFailure();  ///< true when the state stands still
-  void storeContacts(const std::vector<ContactPoint>& points);
-  void storeJointImpulses();
+  void storeOutcome();
   void storeReport();
   void dumpProblem();
   int countIslands();
@@ -43,29 +36,29 @@ struct Simulator::Impl
   void applyState();
   void impactSolve();
   void restartLedger();
+  void bookEnergies();
+  void updateEnds();
 
+  std::shared_ptr<const WorldModel> world;
   Scenario scenario;
-  World world;
-  StepSettings settings;
+  CollisionWorld collision;
+  SimulationState state;
+  SimulationState start;  ///< what a reset goes back to
+  StepOutcome start_outcome;
+  std::vector<Body> bodies;
+  StepContext context;
   StepAssembly assembly;
   std::unique_ptr<Solver> solver;
   FailurePolicy policy = FailurePolicy::ACCEPT;
   std::string dump_folder;
-  double loading_seconds = 0.0;
-  double time = 0.0;
-
-  std::vector<Eigen::VectorXd> q_initial;
-  std::vector<Eigen::VectorXd> v_initial;
-  std::vector<Eigen::Isometry3d> base_initial;
+  int dumps = 0;
+  std::string dump_name;  ///< folder and name that no other simulator of this process uses
 
   Solution guess;
   SolverResult result;
-  bool step_failed = false;
+  Eigen::VectorXd law_errors;
+  StepOutcome outcome;
   StepSummary report;
-  double energy_start = 0.0;
-  std::vector<ContactState> contacts;
-  std::vector<std::pair<std::uint64_t, int>> contact_index;  ///< id to position in contacts, sorted
-  std::vector<std::vector<std::array<double, 4>>> joint_impulses;  ///< robot, joint, JointRow::Kind
   std::vector<int> island_of;
 };
 

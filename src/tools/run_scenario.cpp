@@ -96,8 +96,8 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
   const auto start = std::chrono::steady_clock::now();
   for (; summary.steps < total && interrupted == 0; ++summary.steps)
   {
-    const fcs::StepSummary& report = simulator.step();
-    summary.failed_steps += report.status != fcs::SolverStatus::CONVERGED;
+    summary.failed_steps += !simulator.step().converged();
+    const fcs::StepSummary& report = simulator.report();
     summary.worst_residual = std::max(summary.worst_residual, report.residual);
     summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
     summary.max_bilateral_violation = std::max(summary.max_bilateral_violation, report.bilateral_violation);

@@ -38,10 +38,11 @@ struct JointCommand
   double max_effort = std::numeric_limits<double>::infinity();  ///< [N m] or [N], besides the URDF's effort limit
 };
 
-/** @brief A wrench on a link during [from, until). */
+/** @brief A wrench on a link during [from, until) of the scenario's clock, which starts at 0 again at every reset. */
 struct ExternalWrench
 {
   std::string link;
+  int frame = -1;  ///< index of `link` in the model, set when the wrench is added
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< where the force acts, in the link frame [m]

@@ -5,144 +5,79 @@
  *
  *     M = M(q_m) + dt^2/4 K + dt D                              servo stiffness K at the midpoint, damping D at the end
  *     f = -M(q_m) v_k + dt (bias(q_m, v_m) - applied) - c       c: servo offsets, see actuation.h
- *     u = H v + w                                               contacts, limits, dry friction, bounded servos
- *     G v + b = 0,  b = phi(q_m)/dt                             mimic joints
+ *     u = H v + w,   G v + b = 0                                the rows of all row sources (row_source.h)
  *
  * with the predicted v_m = (v_k + v_free)/2, v_free the solution of M v + f = H^T r_last with bias at v_k and the last
  * step's impulses of contacts that persist: second order, and at rest exactly zero. Source: Cadoux (2009),
  * (2.28)-(2.31).
- *
- * A servo at its effort limit is a row: an auxiliary velocity s with mass K and the row u = v_j - s - c/K give the
- * impulse r = c - K v_j while |r| < limit dt, and +-limit dt beyond: the law of dry friction, exactly.
  */
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
-#include "frictional_contact_sim/collision/collision_world.h"
-#include "frictional_contact_sim/dynamics/contact_law.h"
-#include "frictional_contact_sim/dynamics/creep_law.h"
-#include "frictional_contact_sim/dynamics/material.h"
-#include "frictional_contact_sim/dynamics/robot.h"
-#include "frictional_contact_sim/dynamics/row_builder.h"
-#include "frictional_contact_sim/dynamics/rows.h"
+#include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/energy_ledger.h"
+#include "frictional_contact_sim/dynamics/row_source.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
 
 namespace frictional_contact_sim
 {
-/** @brief Friction and restitution by pair of shapes, from tables made once. */
-class PairTable
-{
-public:
-  PairTable() = default;
-  /** @param sides one a shape handle */
-  PairTable(const MaterialTable& materials, const std::vector<SurfaceSide>& sides);
-  const Material& operator()(int shape_a, int shape_b) const
-  {
-    return table_[class_of_[shape_a] * classes_ + class_of_[shape_b]];
-  }
-  /** @brief True when some pair has the creep law. */
-  bool hasCreep() const;
-
-private:
-  int classes_ = 0;
-  std::vector<int> class_of_;
-  std::vector<Material> table_;
-};
-
-struct StepSettings
-{
-  double dt = 0.001;  ///< [s] > 0
-  Eigen::Vector3d gravity{0.0, 0.0, -9.81};
-  NormalLaw normal_law;
-};
-
 class StepAssembly
 {
 public:
-  /** @brief Sizes everything; the robots and shapes may not change in number afterwards. */
-  StepAssembly(std::vector<Robot>& robots, const CollisionWorld& world, PairTable pairs);
+  /** @brief Sizes everything; the bodies may not change in number afterwards, and outlive this. */
+  StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_ptr<RowSource>> sources, RowState& state);
 
-  /** @brief Rows H, w, G, b, laws of one step. Robots' middle data are at q_m. */
-  void assembleRows(const std::vector<ContactPoint>& points, const StepSettings& settings);
+  /** @brief Once a step (or impact), before assembleRows. Bodies' middle data are at q_m. Sets context.v_old. */
+  void begin(StepContext& context);
+  /** @brief Rows H, w, G, b, laws of one step or impact. */
+  void assembleRows(const StepContext& context);
+  /** @brief v at the start, impulses of the last step. */
+  void makeGuess(const StepContext& context, Solution& guess) const;
   /**
-   * @brief M and f of one step, after assembleRows.
-   * @param guess impulses (rows) for the predicted midpoint velocity, lambda for mimic rows
+   * @brief M and f, after assembleRows; in an impact M v - M v_k = H^T r.
+   * @param guess its impulses give the predicted midpoint velocity
+   * @return index of a body whose mass matrix is not positive definite, else -1
    */
-  void assembleDynamics(const Solution& guess, const StepSettings& settings);
-  /** @brief The whole problem of an impact at one instant: M v - M v_k = H^T r, contacts and limits at gap <= 1e-9. */
-  void assembleImpact(const std::vector<ContactPoint>& points);
+  int assembleDynamics(const StepContext& context, const Solution& guess);
+  /** @brief A problem without rows and forces, in place of one that could not be assembled. */
+  void clear();
 
-  /** @brief True when some pair of materials has the creep law; only then are the next three calls of any use. */
-  bool hasCreep() const { return creep_; }
-  /** @brief Once a step, before assembleRows: creep contacts are linearised at the start velocities. */
-  void startCreep(size_t points);
-  /** @brief Normal impulse that is expected at a contact point; the law is Coulomb's where it is unknown. */
-  void setCreepNormal(int point, double normal);
-  /**
-   * @brief Moves the linearisation to a solution. @param tolerance of the traction, relative to mu r_N
-   * @return true when the tangents missed the law there: assemble and solve again
-   */
-  bool updateCreep(const Solution& solution, double tolerance);
+  /** @brief Whether rows want the step solved again. @param converged the solve's verdict */
+  Again again(const StepContext& context, const Solution& solution, bool converged);
+  /** @brief Name of the rows that said anything but NO last. */
+  const char* unsatisfied() const { return unsatisfied_; }
+  /** @brief Sets the bodies' v_middle to the mean of old and new velocity. */
+  void setMeanVelocity(const Solution& solution);
+  /** @brief Books the work of every impulse of a solved step; needs setMeanVelocity, the state still the old one. */
+  void book(const StepContext& context, const Solution& solution, EnergyLedger& ledger) const;
+  /** @brief Hands the answer of the step to all rows. */
+  void accept(const StepContext& context, const StepAnswer& answer);
 
   const IncrementalProblem& problem() const { return problem_; }
-  const std::vector<ContactRow>& contactRows() const { return contact_rows_; }
-  const std::vector<JointRow>& jointRows() const { return joint_rows_; }
-  const std::vector<MimicRow>& mimicRows() const { return mimic_rows_; }
-  /** @brief Velocities of the robots, without auxiliary ones. */
+  /** @brief Velocities of the bodies, without auxiliary ones. */
   int velocities() const { return velocities_; }
+  /** @brief True when a contact or limit closes: an impact has something to solve. */
+  bool closing() const { return sink_.closing(); }
+  /** @brief Largest position error of bilateral rows at the midpoint [m] or [rad]. */
+  double bilateralViolation() const;
 
 private:
-  void beginRows();
-  void addContact(const ContactPoint& point, int index, const StepSettings* settings);
-  void addCreep(const ContactPoint& point, const CreepTable& curve, const Eigen::Vector3d& velocity,
-                ContactRow& contact);
-  Eigen::Vector3d addRollingSide(const ContactPoint& point, const ShapeInfo& shape, double weight,
-                                 const Eigen::Matrix3d& spin);
-  void addLimits(int robot, int joint, const StepSettings* settings);
-  void addJointRow(JointRow::Kind kind, int robot, int joint, double sign, double w, double shift, Law law);
-  void addMimic(int robot, int joint, double dt);
-  void finishRows();
-  void collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
-                      std::vector<std::pair<int, Eigen::Vector3d>>& columns) const;
-  Eigen::Vector3d baseVelocity(const ShapeInfo& shape, const Eigen::Vector3d& position) const;
-  bool movesAlong(const Eigen::Vector3d& normal) const;
   void assembleMass(bool with_implicit);
+  void bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record, EnergyLedger& ledger) const;
 
-  /** One contact with the creep law; its row of rolling_rows_ has the same index. */
-  struct CreepContact
-  {
-    int contact;  ///< in contact_rows_
-    const CreepTable* curve;
-    double base_speed;  ///< share of moving bases in the rolling speed [m/s]
-  };
-
-  std::vector<Robot>& robots_;
-  const CollisionWorld& world_;
-  PairTable pairs_;
+  std::vector<Body>& bodies_;
+  std::vector<std::unique_ptr<RowSource>> sources_;
+  RowState& state_;
+  const char* unsatisfied_ = "";
   int velocities_ = 0;
-  int auxiliaries_ = 0;
   Eigen::VectorXd v_old_;  ///< velocities_: at the start of the step
+  Eigen::VectorXd v_mean_;  ///< of the bodies, 0 for auxiliary columns
   Eigen::VectorXd impulse_;  ///< generalized impulse of the guess
-  Eigen::VectorXd scratch_;  ///< momentum without bias, robot by robot
-  RowBuilder rows_h_;
-  RowBuilder rows_g_;
+  Eigen::VectorXd momentum_;  ///< without bias, body by body
+  RowSink sink_;
   RowBuilder rows_m_;
-  std::vector<double> w_;
-  std::vector<double> b_;
-  std::vector<double> auxiliary_mass_;
-  std::vector<std::pair<int, Eigen::Vector3d>> columns_a_;
-  std::vector<std::pair<int, Eigen::Vector3d>> columns_b_;
   std::vector<std::vector<int>> mass_columns_;  ///< tree pattern of M, row by row
-  bool creep_ = false;
-  int creep_iterations_ = 0;  ///< in this step
-  std::vector<RollingShape> rolling_shapes_;  ///< one a shape handle
-  std::vector<CreepPoint> creep_points_;  ///< one a detected point, kept over the iterations of a step
-  std::vector<CreepContact> creep_contacts_;
-  RowBuilder rolling_rows_;  ///< rolling speed along the rolling direction, by generalized velocity
-  std::vector<std::pair<int, Eigen::Vector3d>> rolling_columns_;
-  std::vector<ContactRow> contact_rows_;
-  std::vector<JointRow> joint_rows_;
-  std::vector<MimicRow> mimic_rows_;
   IncrementalProblem problem_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file multibody_data.h
- * @brief Workspace of the algorithms in model/kinematics.h and model/dynamics.h, sized once from the model.
+ * @brief Workspace of the algorithms in model/kinematics.h and model/dynamics_algorithms.h, sized once from the model.
  *
  * Everything is in world axes. Spatial vectors are (linear; angular) and refer to the point `reference`, the origin of
  * the root body at the time of forwardKinematics (small lever arms wherever the robot stands): the linear part of a
@@ -30,6 +30,9 @@ struct WorldInertia
 struct MultibodyData
 {
   explicit MultibodyData(const MultibodyModel& model);
+
+  /// Root joint frame in the world: the model's placement, unless the base is moved; read by forwardKinematics.
+  Eigen::Isometry3d base_pose;
 
   // written by forwardKinematics
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();

@@ -88,7 +88,7 @@ struct Joint
 };
 
 /** @brief A moving body: one or more URDF links rigidly joined. */
-struct Body
+struct Link
 {
   std::string name;  ///< of its root link
   RigidInertia inertia;
@@ -115,7 +115,7 @@ struct CollisionShape
 struct MultibodyModel
 {
   std::string name;
-  std::vector<Body> bodies;  ///< parents first
+  std::vector<Link> bodies;  ///< parents first
   std::vector<Joint> joints;  ///< joint i moves body i
   std::vector<Frame> frames;
   std::vector<CollisionShape> shapes;

@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file simulator.h
- * @brief The simulator without ROS: a scenario in, one step at a time out. Deterministic; one thread.
+ * @brief The simulator without ROS: a scenario in, one step at a time out. Deterministic; one thread a simulator.
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -15,7 +15,9 @@
 #include "frictional_contact_sim/model/multibody_model.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
 #include "frictional_contact_sim/simulation/scenario.h"
+#include "frictional_contact_sim/simulation/state.h"
 #include "frictional_contact_sim/simulation/step_report.h"
+#include "frictional_contact_sim/simulation/world_model.h"
 
 namespace frictional_contact_sim
 {
@@ -32,28 +34,43 @@ class Simulator
 {
 public:
   /**
-   * @brief Loads all robots and sets the initial state.
+   * @brief Loads all bodies and sets the initial state.
    * @throws ModelError, ScenarioError, std::invalid_argument with one line that names what is wrong
    */
   explicit Simulator(const Scenario& scenario);
+  /** @brief Another simulation of a world that is loaded; the world may be simulated in many threads at once. */
+  explicit Simulator(std::shared_ptr<const WorldModel> world);
   ~Simulator();
 
-  /** @brief One time step (DESIGN.md, "The time step"). No allocation after warm-up while contacts persist. */
-  const StepSummary& step();
-  /** @brief Initial state again; time and step count go on; the energy ledger starts anew. */
-  void reset();
-  /** @brief Time back to zero. */
+  /**
+   * @brief One time step (DESIGN.md, "The time step"). Nothing is thrown: what goes wrong is in the outcome, and the
+   * failure policy says what is left. No allocation after warm-up while contacts persist.
+   */
+  const StepOutcome& step();
+  /** @brief The scenario's start again, commands and wrenches too; time and step count go on; the ledger starts anew.
+   */
+  const StepOutcome& reset();
+  /** @brief Time back to zero; the scenario's clock, which wrench windows see, is not touched. */
   void resetTime();
+  /** @brief From now on. @throws std::invalid_argument unless finite and > 0 */
+  void setTimeStep(double dt);
+
+  const SimulationState& state() const;
+  /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays. */
+  const StepOutcome& setState(const SimulationState& state);
+  /** @brief Of the last step, reset, load or set; at the start that of its impact solve. */
+  const StepOutcome& outcome() const;
 
   const StepSummary& report() const;
   const std::vector<ContactState>& contacts() const;  ///< of the last step, ordered by shapes and feature
   const ShapeInfo& shape(int handle) const;
+  int shapeCount() const;
   double time() const;
   const Scenario& scenario() const;
   const std::vector<std::string>& warnings() const;  ///< from loading, one line each
   double loadingSeconds() const;
 
-  int bodyCount() const;  ///< robots, in the order of the scenario
+  int bodyCount() const;  ///< in the order of the scenario
   const std::string& bodyName(int body) const;
   const MultibodyModel& model(int body) const;
   const MultibodyData& data(int body) const;  ///< poses and velocities at the end of the step
@@ -63,8 +80,9 @@ public:
   Eigen::VectorXd& velocity(int body);
   /** @brief Effort of a joint's drive over the last step, after saturation [N m] or [N]. */
   double effort(int body, int joint) const;
-  /** @brief After a state was written by hand: impact solve at q (DESIGN.md), warm starts dropped. */
-  void stateChanged();
+  /** @brief After a position or velocity was written: impact solve at q (DESIGN.md), warm starts dropped, ledger anew.
+   */
+  const StepOutcome& stateChanged();
 
   /**
    * @brief Command of one joint, from the next step on. Unset gains are filled from the joint's inertia.
@@ -72,7 +90,8 @@ public:
    */
   void setCommand(int body, int joint, const JointCommand& command);
   const JointCommand& command(int body, int joint) const;
-  /** @brief Adds a wrench (times are simulation times). @throws std::invalid_argument naming an unknown link */
+  /** @brief Adds a wrench; its times are on the scenario's clock. @throws std::invalid_argument naming an unknown link
+   */
   void addWrench(int body, const ExternalWrench& wrench);
   void clearWrenches();
 
@@ -84,7 +103,7 @@ public:
   /** @brief The problem of the last step and its answer (for FCLib files and tests). */
   const IncrementalProblem& problem() const;
   const Solution& solution() const;
-  /** @brief FNV-1a over every field of state, contacts and report that is not wall-clock time. */
+  /** @brief hashOf(state()). */
   std::uint64_t stateHash() const;
 
 private:

@@ -1,0 +1,80 @@
+#pragma once
+/**
+ * @file contact_rows.h
+ * @brief Contacts: three rows (normal, tangent 1, tangent 2) each, Coulomb's law with the shift of the normal law.
+ *
+ *     u = H v + w,   H the relative point velocity of the two links,   w = moving bases + shift (contact_law.h)
+ */
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "frictional_contact_sim/dynamics/contact_state.h"
+#include "frictional_contact_sim/dynamics/creep_law.h"
+#include "frictional_contact_sim/dynamics/pair_table.h"
+#include "frictional_contact_sim/dynamics/row_source.h"
+
+namespace frictional_contact_sim
+{
+/** @brief Columns of a point velocity: coordinate and the motion that it gives the point, coordinates ascend. */
+using PointColumns = std::vector<std::pair<int, Eigen::Vector3d>>;
+
+/** @brief The rows of one contact. */
+struct ContactRow
+{
+  int point = 0;  ///< index in the list of detected contact points
+  int row = 0;  ///< first row
+  int law = 0;
+  Eigen::Vector3d tangent_1 = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d tangent_2 = Eigen::Vector3d::UnitY();
+  double friction = 0.0;
+  double restitution = 0.0;
+  double shift = 0.0;  ///< of the normal law [m/s]; w holds base velocity + shift
+  bool closing = false;
+  CreepTangent creep;  ///< along tangent_1, the rolling direction then; u of the solution holds k r + c as well
+};
+
+class CreepRows;
+
+class ContactRows : public RowSource
+{
+public:
+  /**
+   * @param contacts of the last step; this one's after accept()
+   * @param creep bends contacts of a pair with the creep law; nullptr where no pair has it
+   */
+  ContactRows(const std::vector<Body>& bodies, const CollisionWorld& world, const PairTable& pairs,
+              std::vector<ContactState>& contacts, CreepRows* creep);
+
+  const char* name() const override { return "contacts"; }
+  void begin(const StepContext& context) override;
+  void addRows(const StepContext& context, RowSink& sink) override;
+  void guess(const StepContext& context, Solution& guess) const override;
+  void accept(const StepContext& context, const StepAnswer& answer) override;
+
+private:
+  void add(const StepContext& context, int index, RowSink& sink);
+  void collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
+                      PointColumns& columns) const;
+  bool movesAlong(const Eigen::Vector3d& normal) const;
+  /** Last contact of the same id, or nullptr where there was none or it was an impact. */
+  const ContactState* last(std::uint64_t id) const;
+
+  const std::vector<Body>& bodies_;
+  const CollisionWorld& world_;
+  const PairTable& pairs_;
+  std::vector<ContactState>& contacts_;
+  CreepRows* creep_;
+  std::vector<std::pair<std::uint64_t, int>> index_;  ///< id to position in contacts_, sorted
+  std::vector<ContactRow> rows_;
+  PointColumns columns_a_;
+  PointColumns columns_b_;
+};
+
+/** @brief Velocity that a moving base gives to a point of a shape [m/s]. */
+Eigen::Vector3d baseVelocity(const std::vector<Body>& bodies, const ShapeInfo& shape, const Eigen::Vector3d& position);
+
+/** @brief Two unit vectors that complete `normal` to a right-handed frame; smooth in the normal almost everywhere. */
+void tangentFrame(const Eigen::Vector3d& normal, Eigen::Vector3d& tangent_1, Eigen::Vector3d& tangent_2);
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,75 @@
+#pragma once
+/**
+ * @file row_sink.h
+ * @brief Collects the rows of one step from all row sources: H, w, laws, G, b, auxiliary masses, and for each row
+ * which entry of the energy ledger its impulse belongs to and where that impulse is kept for the next step.
+ *
+ * A law of d rows is d times `push ... endRow`, then `endLaw`. Columns of a row ascend. Storage only grows.
+ */
+#include <vector>
+
+#include "frictional_contact_sim/dynamics/energy_ledger.h"
+#include "frictional_contact_sim/dynamics/row_builder.h"
+#include "frictional_contact_sim/problem/incremental_problem.h"
+
+namespace frictional_contact_sim
+{
+/** @brief What is known of a row besides its numbers. */
+struct RowRecord
+{
+  WorkAccount account = WorkAccount::JOINTS;
+  double base_velocity = 0.0;  ///< share of moving bases in u [m/s]: their drives do its work
+  double* memory = nullptr;  ///< the impulse of the last step, warm start of this one; none: the source keeps its own
+};
+
+class RowSink
+{
+public:
+  /** @brief Empties everything. @param velocities generalized velocities of all bodies, before auxiliary ones */
+  void clear(int velocities);
+
+  int rows() const { return h_.rows(); }
+  int laws() const { return static_cast<int>(laws_.size()); }
+  int bilaterals() const { return g_.rows(); }
+  int velocities() const { return velocities_; }
+  int columns() const { return velocities_ + static_cast<int>(auxiliary_mass_.size()); }
+
+  /** @brief Next entry of the current row of H. */
+  void push(int column, double value) { h_.push(column, value); }
+  /** @brief Ends a row of H. @param w [m/s] or [rad/s] */
+  void endRow(double w, const RowRecord& record);
+  /** @brief The law of the rows that have ended since the last one. */
+  void endLaw(const Law& law) { laws_.push_back(law); }
+  /** @brief A velocity that exists for this step only. @param mass [kg] or [kg m^2] > 0 @return its column */
+  int addAuxiliary(double mass);
+
+  void pushBilateral(int column, double value) { g_.push(column, value); }
+  /** @brief Ends a row of G. @param b [m/s] or [rad/s] */
+  void endBilateral(double b, const RowRecord& record);
+
+  /** @brief A row closes at this instant: an impact has something to solve. */
+  void noteClosing() { closing_ = true; }
+  bool closing() const { return closing_; }
+
+  const std::vector<RowRecord>& rowRecords() const { return row_records_; }
+  const std::vector<RowRecord>& bilateralRecords() const { return bilateral_records_; }
+  const std::vector<double>& auxiliaryMass() const { return auxiliary_mass_; }
+  const RowBuilder& h() const { return h_; }
+  const RowBuilder& g() const { return g_; }
+  /** @brief H, w, laws, G, b of `problem`; an impact has b = 0 (the position error is the next step's). */
+  void copyTo(bool impact, IncrementalProblem& problem) const;
+
+private:
+  int velocities_ = 0;
+  bool closing_ = false;
+  RowBuilder h_;
+  RowBuilder g_;
+  std::vector<double> w_;
+  std::vector<double> b_;
+  std::vector<Law> laws_;
+  std::vector<double> auxiliary_mass_;
+  std::vector<RowRecord> row_records_;
+  std::vector<RowRecord> bilateral_records_;
+};
+
+}  // namespace frictional_contact_sim

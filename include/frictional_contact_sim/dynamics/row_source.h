@@ -1,0 +1,111 @@
+#pragma once
+/**
+ * @file row_source.h
+ * @brief What every kind of row offers to the assembly of a step: contacts, joint limits, dry friction, servos, mimic
+ * joints and the creep law are one class each, in one file pair; a new kind is a new class and a line in
+ * row_sources.cpp.
+ *
+ * A source adds its rows to a RowSink, which keeps them in the order they come: contacts, then joint by joint. What a
+ * row is worth to the ledger and where its impulse is kept goes with the row (RowRecord), so most sources have nothing
+ * else to say.
+ */
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/collision/collision_world.h"
+#include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/contact_law.h"
+#include "frictional_contact_sim/dynamics/contact_state.h"
+#include "frictional_contact_sim/dynamics/row_sink.h"
+#include "frictional_contact_sim/model/kinematics.h"
+
+namespace frictional_contact_sim
+{
+/** @brief What a step is solved for. */
+struct StepContext
+{
+  double dt = 0.001;  ///< [s] > 0
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};
+  NormalLaw normal_law;
+  double tolerance = 1e-8;  ///< of the solver, on E
+  bool impact = false;  ///< an impact at one instant: rows at gap <= CONTACT_GAP, no forces
+  const std::vector<ContactPoint>* points = nullptr;  ///< detected at the midpoint (impact: at q), valid for the step
+  const Eigen::VectorXd* v_old = nullptr;  ///< velocities of all bodies at the start of the step
+};
+
+/** @brief The answer of a step as its rows read it. */
+struct StepAnswer
+{
+  const Solution& solution;  ///< finite
+  const Eigen::VectorXd& law_errors;  ///< |e_i| of each law, natural map [m/s]; empty: not known
+};
+
+/** @brief Impulses that a source keeps from one step for the next. */
+struct RowMemory
+{
+  std::string name;  ///< of the source
+  std::vector<double> impulses;  ///< [N s] or [N m s]
+};
+
+/** @brief What rows keep from one step for the next: part of the simulation's state. May be assigned, never moved. */
+struct RowState
+{
+  std::vector<ContactState> contacts;  ///< of the last step, ordered by shapes and feature
+  std::vector<RowMemory> memory;  ///< one a source that keeps impulses
+};
+
+/** @brief RowMemory of a source with so many impulses a joint. */
+class JointMemory
+{
+public:
+  /** @brief Names `memory` and sizes it, all zero. It lives as long as this; it may be assigned, never moved. */
+  JointMemory(const char* name, int impulses_a_joint, const std::vector<Body>& bodies, RowMemory& memory);
+  double* at(int body, int joint, int which = 0)
+  {
+    return memory_.impulses.data() + static_cast<size_t>((first_[body] + joint) * width_ + which);
+  }
+
+private:
+  RowMemory& memory_;
+  int width_;
+  std::vector<int> first_;  ///< bodies: joints of those before
+};
+
+/** @brief Whether the step has to be solved again. */
+enum class Again
+{
+  NO,
+  FROM_GUESS,  ///< rows have changed: from the warm start
+  FROM_ANSWER,  ///< rows have moved a little: from the last answer
+  NEVER  ///< the rows' own law could not be met: the step has failed
+};
+
+class RowSource
+{
+public:
+  virtual ~RowSource() = default;
+
+  /** @brief For messages. */
+  virtual const char* name() const = 0;
+  /** @brief Once a step, before anything else; bodies stand at the midpoint. */
+  virtual void begin(const StepContext&) {}
+  /** @brief Rows that belong to no single joint. */
+  virtual void addRows(const StepContext&, RowSink&) {}
+  /** @brief Rows of one joint with one coordinate. */
+  virtual void addJointRows(const StepContext&, int /*body*/, int /*joint*/, RowSink&) {}
+  /** @brief What acts without a row: impulses into `momentum` (nv), what is implicit into Body::implicit. */
+  virtual void addMomentum(const StepContext&, int /*body*/, VectorOut /*momentum*/) {}
+  /** @brief Impulses of the last step, where RowRecord::memory does not hold them. */
+  virtual void guess(const StepContext&, Solution&) const {}
+  /** @brief Asked in turn after a solve, until one says other than NO. @param converged the solve's verdict */
+  virtual Again again(const StepContext&, const Solution&, bool /*converged*/) { return Again::NO; }
+  /** @brief The step is done: take from the answer what is reported or kept. */
+  virtual void accept(const StepContext&, const StepAnswer&) {}
+  /** @brief Work of what addMomentum added for one body. Body::v_middle is the mean of old and new velocity. */
+  virtual void book(const StepContext&, int /*body*/, const Solution&, EnergyLedger&) const {}
+  /** @brief Largest position error of its bilateral rows [m] or [rad]. */
+  virtual double violation() const { return 0.0; }
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,51 @@
+#pragma once
+/**
+ * @file servo_rows.h
+ * @brief Commands of joints: implicit servos in M and f, and those at their effort limit as rows.
+ *
+ * Below its limit a servo gives dt tau = c - K v_j (actuation.h): K to the diagonal of M, c to the momentum. At its
+ * limit it is a row: an auxiliary velocity s with mass K and u = v_j - s - c/K give the impulse r = c - K v_j while
+ * |r| < limit dt, and +-limit dt beyond: the law of dry friction, exactly. A servo that worked near its limit in the
+ * last step is a row from the start; one found beyond it becomes a row and the step is solved again. Rows are only ever
+ * added within a step, so this ends.
+ */
+#include <vector>
+
+#include "frictional_contact_sim/dynamics/row_source.h"
+
+namespace frictional_contact_sim
+{
+class ServoRows : public RowSource
+{
+public:
+  /** @param memory one impulse a joint; sized here */
+  ServoRows(std::vector<Body>& bodies, RowMemory& memory);
+
+  const char* name() const override { return "servos"; }
+  void begin(const StepContext& context) override;
+  void addJointRows(const StepContext& context, int body, int joint, RowSink& sink) override;
+  void addMomentum(const StepContext& context, int body, VectorOut momentum) override;
+  Again again(const StepContext& context, const Solution& solution, bool converged) override;
+  void accept(const StepContext& context, const StepAnswer& answer) override;
+  void book(const StepContext& context, int body, const Solution& solution, EnergyLedger& ledger) const override;
+
+private:
+  struct Servo
+  {
+    int body;
+    int joint;
+    int v_index;  ///< in the body's v
+    ServoImpulse impulse;  ///< of this step
+    bool bounded = false;  ///< solved as a row in this step
+    int row = -1;  ///< then
+  };
+  static double effort(const Servo& servo, double velocity, double dt);
+
+  std::vector<Body>& bodies_;
+  JointMemory memory_;
+  std::vector<Servo> servos_;  ///< one a joint that takes commands, body by body
+  std::vector<std::vector<int>> servo_of_;  ///< body, joint: index in servos_, -1 = none
+  std::vector<int> first_;  ///< bodies + 1: first servo of each
+};
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,32 @@
+#pragma once
+/**
+ * @file world_model.h
+ * @brief What a scenario's simulations share and none of them changes: bodies, hulls, pair table, and the state that a
+ * scenario starts from. Load it once, simulate it as often and in as many threads as you like.
+ */
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frictional_contact_sim/collision/collision_world.h"
+#include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/pair_table.h"
+#include "frictional_contact_sim/simulation/scenario.h"
+
+namespace frictional_contact_sim
+{
+struct WorldModel
+{
+  Scenario scenario;
+  std::vector<BodyModel> bodies;
+  std::vector<BodyState> start;  ///< of each body, before the impact solve of the start
+  CollisionWorld collision;  ///< copies share its shapes
+  PairTable pairs;
+  std::vector<std::string> warnings;  ///< from loading, one line each
+  double loading_seconds = 0.0;
+};
+
+/** @throws ModelError, ScenarioError, std::invalid_argument with one line that names the body and what is wrong */
+std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario);
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,246 @@
+#include "frictional_contact_sim/dynamics/assembly.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "frictional_contact_sim/model/dynamics_algorithms.h"
+
+namespace frictional_contact_sim
+{
+StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_ptr<RowSource>> sources, RowState& state)
+  : bodies_(bodies), sources_(std::move(sources)), state_(state)
+{
+  for (Body& body : bodies_)
+  {
+    body.v_offset = velocities_;
+    velocities_ += body.model.tree.nv;
+  }
+  // Entry (i, j) of M is structurally nonzero when one coordinate is the other's ancestor (Featherstone 2008, 6.3).
+  mass_columns_.resize(velocities_);
+  for (const Body& body : bodies_)
+    for (int i = 0; i < body.model.tree.nv; ++i)
+      for (int j = i; j >= 0; j = body.model.tree.dof_parent[j])
+      {
+        mass_columns_[body.v_offset + i].push_back(body.v_offset + j);
+        if (i != j)
+          mass_columns_[body.v_offset + j].push_back(body.v_offset + i);
+      }
+  for (std::vector<int>& columns : mass_columns_)
+    std::sort(columns.begin(), columns.end());
+  v_old_.resize(velocities_);
+  clear();
+}
+
+void StepAssembly::begin(StepContext& context)
+{
+  for (const Body& body : bodies_)
+    v_old_.segment(body.v_offset, body.model.tree.nv) = body.state.v;
+  context.v_old = &v_old_;
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->begin(context);
+}
+
+void StepAssembly::assembleRows(const StepContext& context)
+{
+  sink_.clear(velocities_);
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->addRows(context, sink_);
+  for (size_t b = 0; b < bodies_.size(); ++b)
+  {
+    const std::vector<Joint>& joints = bodies_[b].model.tree.joints;
+    for (size_t j = 0; j < joints.size(); ++j)
+      if (velocitySize(joints[j].type) == 1)
+        for (const std::unique_ptr<RowSource>& source : sources_)
+          source->addJointRows(context, static_cast<int>(b), static_cast<int>(j), sink_);
+  }
+  sink_.copyTo(context.impact, problem_);
+}
+
+void StepAssembly::makeGuess(const StepContext& context, Solution& guess) const
+{
+  guess.r.setZero(problem_.rows());
+  guess.u.setZero(problem_.rows());
+  guess.v.setZero(sink_.columns());
+  guess.v.head(velocities_) = v_old_;
+  guess.lambda.setZero(problem_.bilaterals());
+  if (context.impact)
+    return;
+  for (int i = 0; i < problem_.rows(); ++i)
+    if (const double* memory = sink_.rowRecords()[i].memory)
+      guess.r[i] = *memory;
+  for (int k = 0; k < problem_.bilaterals(); ++k)
+    if (const double* memory = sink_.bilateralRecords()[k].memory)
+      guess.lambda[k] = *memory;
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->guess(context, guess);
+}
+
+void StepAssembly::assembleMass(bool with_implicit)
+{
+  rows_m_.clear();
+  for (const Body& body : bodies_)
+    for (int i = 0; i < body.model.tree.nv; ++i)
+    {
+      for (const int column : mass_columns_[body.v_offset + i])
+      {
+        const int j = column - body.v_offset;
+        rows_m_.push(column, body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0));
+      }
+      rows_m_.endRow();
+    }
+  for (int column = velocities_; column < sink_.columns(); ++column)
+  {
+    rows_m_.push(column, sink_.auxiliaryMass()[column - velocities_]);
+    rows_m_.endRow();
+  }
+  rows_m_.copyTo(sink_.columns(), problem_.M);
+}
+
+int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess)
+{
+  const double dt = context.dt;
+  const int size = sink_.columns();
+  problem_.f.setZero(size);
+  momentum_.resize(velocities_);
+  assert(guess.r.size() == problem_.rows());
+  if (!context.impact)
+  {
+    impulse_.setZero(size);
+    if (problem_.rows() > 0)
+      impulse_.noalias() += problem_.H.transpose() * guess.r;
+    if (problem_.bilaterals() > 0)
+      impulse_.noalias() += problem_.G.transpose() * guess.lambda;
+  }
+  int singular = -1;
+  for (size_t b = 0; b < bodies_.size(); ++b)
+  {
+    Body& body = bodies_[b];
+    const MultibodyModel& tree = body.model.tree;
+    if (tree.nv == 0)
+      continue;
+    auto momentum = momentum_.segment(body.v_offset, tree.nv);  // M v_k + dt applied + c, without bias
+    momentum.noalias() = body.middle.mass_matrix * body.state.v;
+    if (context.impact)
+    {
+      problem_.f.segment(body.v_offset, tree.nv) = -momentum;
+      continue;
+    }
+    momentum += dt * body.external;
+    body.implicit = dt * body.model.damping;
+    for (const std::unique_ptr<RowSource>& source : sources_)
+      source->addMomentum(context, static_cast<int>(b), momentum);
+
+    computeBiasForces(tree, body.state.v, context.gravity, body.middle, body.bias);
+    if (!factorizeMassMatrix(tree, body.implicit, body.middle))
+    {
+      singular = static_cast<int>(b);
+      continue;
+    }
+    body.v_middle = momentum - dt * body.bias + impulse_.segment(body.v_offset, tree.nv);
+    solveMassMatrix(tree, body.middle, body.v_middle);
+    body.v_middle = 0.5 * (body.v_middle + body.state.v);
+    computeBiasForces(tree, body.v_middle, context.gravity, body.middle, body.bias);
+    problem_.f.segment(body.v_offset, tree.nv) = dt * body.bias - momentum;
+  }
+  assembleMass(!context.impact);
+  return singular;
+}
+
+void StepAssembly::clear()
+{
+  sink_.clear(velocities_);
+  sink_.copyTo(false, problem_);
+  problem_.f.setZero(velocities_);
+  for (Body& body : bodies_)
+    body.middle.mass_matrix.setIdentity();
+  assembleMass(false);
+}
+
+Again StepAssembly::again(const StepContext& context, const Solution& solution, bool converged)
+{
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    if (const Again again = source->again(context, solution, converged); again != Again::NO)
+    {
+      unsatisfied_ = source->name();
+      return again;
+    }
+  return Again::NO;
+}
+
+void StepAssembly::setMeanVelocity(const Solution& solution)
+{
+  v_mean_.setZero(sink_.columns());
+  for (Body& body : bodies_)
+  {
+    const int nv = body.model.tree.nv;
+    body.v_middle = 0.5 * (body.state.v + solution.v.segment(body.v_offset, nv));
+    v_mean_.segment(body.v_offset, nv) = body.v_middle;
+  }
+}
+
+void StepAssembly::bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record,
+                           EnergyLedger& ledger) const
+{
+  const double velocity = rows.dot(row, v_mean_);
+  const double work = impulse * (velocity + record.base_velocity);
+  switch (record.account)
+  {
+    case WorkAccount::IMPACT:
+      ledger.impact -= work;
+      break;
+    case WorkAccount::FRICTION:
+      ledger.friction -= work;
+      break;
+    case WorkAccount::JOINTS:
+      ledger.joints -= work;
+      break;
+    case WorkAccount::ACTUATORS:
+      ledger.actuators += work;
+      break;
+  }
+  ledger.actuators -= impulse * record.base_velocity;  // what the moving base puts in
+}
+
+void StepAssembly::book(const StepContext& context, const Solution& solution, EnergyLedger& ledger) const
+{
+  for (int i = 0; i < problem_.rows(); ++i)
+    bookRow(sink_.h(), i, solution.r[i], sink_.rowRecords()[i], ledger);
+  for (int k = 0; k < problem_.bilaterals(); ++k)
+    bookRow(sink_.g(), k, solution.lambda[k], sink_.bilateralRecords()[k], ledger);
+  if (context.impact)
+    return;
+  for (size_t b = 0; b < bodies_.size(); ++b)
+  {
+    const Body& body = bodies_[b];
+    const auto new_velocity = solution.v.segment(body.v_offset, body.model.tree.nv);
+    ledger.actuators += context.dt * body.external.dot(body.v_middle);
+    ledger.joints += context.dt * (body.model.damping.array() * new_velocity.array() * body.v_middle.array()).sum();
+    for (const std::unique_ptr<RowSource>& source : sources_)
+      source->book(context, static_cast<int>(b), solution, ledger);
+  }
+}
+
+void StepAssembly::accept(const StepContext& context, const StepAnswer& answer)
+{
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->accept(context, answer);
+  for (RowMemory& memory : state_.memory)
+    std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
+  for (int i = 0; i < problem_.rows(); ++i)
+    if (double* memory = sink_.rowRecords()[i].memory)
+      *memory = answer.solution.r[i];
+  for (int k = 0; k < problem_.bilaterals(); ++k)
+    if (double* memory = sink_.bilateralRecords()[k].memory)
+      *memory = answer.solution.lambda[k];
+}
+
+double StepAssembly::bilateralViolation() const
+{
+  double violation = 0.0;
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    violation = std::max(violation, source->violation());
+  return violation;
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,237 @@
+#include "frictional_contact_sim/dynamics/contact_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "frictional_contact_sim/dynamics/creep_rows.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr double STICKING_SPEED = 1e-9;  ///< slower than this is at rest [m/s]
+
+ContactMode modeOf(const ContactRow& row, const Eigen::Vector3d& impulse, const Eigen::Vector3d& velocity,
+                   double tolerance)
+{
+  // What the solver calls zero, in units of this contact: tolerance times its own velocity or impulse, at least 1e-9.
+  const double speed = std::max(STICKING_SPEED, 10.0 * tolerance * velocity.norm());
+  if (impulse[0] <= 0.0)
+    return ContactMode::OPEN;
+  if (row.closing)
+    return ContactMode::IMPACT;
+  // Relative to its cone: nearer to the boundary than this is on it, when the contact also moves.
+  const double margin = row.friction * impulse[0] - impulse.tail<2>().norm();
+  const bool inside = margin > 1e-6 * row.friction * impulse[0];
+  return inside || velocity.tail<2>().norm() <= speed ? ContactMode::STICKING : ContactMode::SLIDING;
+}
+}  // namespace
+
+const char* toString(ContactMode mode)
+{
+  switch (mode)
+  {
+    case ContactMode::OPEN:
+      return "OPEN";
+    case ContactMode::STICKING:
+      return "STICKING";
+    case ContactMode::SLIDING:
+      return "SLIDING";
+    case ContactMode::IMPACT:
+      return "IMPACT";
+  }
+  return "UNKNOWN";
+}
+
+void tangentFrame(const Eigen::Vector3d& normal, Eigen::Vector3d& tangent_1, Eigen::Vector3d& tangent_2)
+{
+  // World x projected on the tangent plane, so that on level ground the frame is (z, x, y); y where x is too close.
+  const Eigen::Vector3d axis = std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  tangent_1 = (axis - normal.dot(axis) * normal).normalized();
+  tangent_2 = normal.cross(tangent_1);
+}
+
+Eigen::Vector3d baseVelocity(const std::vector<Body>& bodies, const ShapeInfo& shape, const Eigen::Vector3d& position)
+{
+  if (shape.robot < 0 || !bodies[shape.robot].model.base_motion.active)
+    return Eigen::Vector3d::Zero();
+  const Body& body = bodies[shape.robot];
+  const Eigen::Vector3d arm = position - body.middle.body_pose.front().translation();
+  return body.model.base_motion.linear + body.model.base_motion.angular.cross(arm);
+}
+
+ContactRows::ContactRows(const std::vector<Body>& bodies, const CollisionWorld& world, const PairTable& pairs,
+                         std::vector<ContactState>& contacts, CreepRows* creep)
+  : bodies_(bodies), world_(world), pairs_(pairs), contacts_(contacts), creep_(creep)
+{
+}
+
+void ContactRows::begin(const StepContext&)
+{
+  index_.clear();
+  for (size_t i = 0; i < contacts_.size(); ++i)
+    index_.emplace_back(contacts_[i].id, static_cast<int>(i));
+  std::sort(index_.begin(), index_.end());
+}
+
+const ContactState* ContactRows::last(std::uint64_t id) const
+{
+  const auto entry = std::lower_bound(index_.begin(), index_.end(), std::make_pair(id, 0));
+  if (entry == index_.end() || entry->first != id)
+    return nullptr;
+  const ContactState& contact = contacts_[entry->second];
+  return contact.mode == ContactMode::IMPACT ? nullptr : &contact;
+}
+
+void ContactRows::addRows(const StepContext& context, RowSink& sink)
+{
+  rows_.clear();
+  if (creep_ != nullptr)
+    creep_->clear();
+  for (size_t i = 0; i < context.points->size(); ++i)
+    add(context, static_cast<int>(i), sink);
+}
+
+void ContactRows::collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
+                                 PointColumns& columns) const
+{
+  columns.clear();
+  if (shape.robot < 0)
+    return;
+  const Body& body = bodies_[shape.robot];
+  const MultibodyData& data = body.middle;
+  const Eigen::Vector3d arm = position - data.reference;
+  for (const int j : body.model.chains[shape.body])
+  {
+    const auto motion = data.motion_subspace.col(j);
+    const Eigen::Vector3d angular = motion.tail<3>();
+    columns.emplace_back(body.v_offset + j, sign * (motion.head<3>() + angular.cross(arm)));
+  }
+}
+
+/** False when no coordinate moves the contact along its normal: then no normal force is determined, nor is any needed.
+ */
+bool ContactRows::movesAlong(const Eigen::Vector3d& normal) const
+{
+  for (const auto* columns : {&columns_a_, &columns_b_})
+    for (const auto& [column, motion] : *columns)
+      if (std::abs(normal.dot(motion)) > 1e-12 * motion.norm())
+        return true;
+  return false;
+}
+
+void ContactRows::add(const StepContext& context, int index, RowSink& sink)
+{
+  const ContactPoint& point = (*context.points)[index];
+  const ShapeInfo& shape_a = world_.shape(point.shape_a);
+  const ShapeInfo& shape_b = world_.shape(point.shape_b);
+  collectColumns(shape_a, point.position, 1.0, columns_a_);
+  collectColumns(shape_b, point.position, -1.0, columns_b_);
+  if (columns_a_.empty() && columns_b_.empty())
+    return;
+
+  ContactRow contact;
+  contact.point = index;
+  contact.row = sink.rows();
+  contact.law = sink.laws();
+  tangentFrame(point.normal, contact.tangent_1, contact.tangent_2);
+  const Eigen::Vector3d relative_base =
+      baseVelocity(bodies_, shape_a, point.position) - baseVelocity(bodies_, shape_b, point.position);
+  const Eigen::Vector3d* axes[3] = {&point.normal, &contact.tangent_1, &contact.tangent_2};
+  Eigen::Vector3d velocity = relative_base;
+  for (const auto& [column, motion] : columns_a_)
+    velocity += (*context.v_old)[column] * motion;
+  for (const auto& [column, motion] : columns_b_)
+    velocity += (*context.v_old)[column] * motion;
+
+  const Material& material = pairs_(point.shape_a, point.shape_b);
+  const double old_normal = point.normal.dot(velocity);
+  const NormalShift shift =
+      context.impact ? impactShift(point.gap, old_normal, material.restitution)
+                     : normalShift(context.normal_law, point.gap, old_normal, material.restitution, context.dt);
+  if (!shift.active || !movesAlong(point.normal))
+    return;
+  contact.friction = material.friction;
+  contact.restitution = material.restitution;
+  contact.shift = shift.shift;
+  contact.closing = shift.closing;
+  if (contact.closing)
+    sink.noteClosing();
+  else if (material.creep != nullptr && !context.impact)
+    creep_->bend(context, *material.creep, velocity, last(point.id), contact);
+
+  for (int d = 0; d < 3; ++d)
+  {
+    // Both lists ascend; merge them, adding where a self-contact has a coordinate on both sides.
+    size_t i = 0;
+    size_t j = 0;
+    while (i < columns_a_.size() || j < columns_b_.size())
+    {
+      const int column_a = i < columns_a_.size() ? columns_a_[i].first : std::numeric_limits<int>::max();
+      const int column_b = j < columns_b_.size() ? columns_b_[j].first : std::numeric_limits<int>::max();
+      double value = 0.0;
+      if (column_a <= column_b)
+        value += axes[d]->dot(columns_a_[i++].second);
+      if (column_b <= column_a)
+        value += axes[d]->dot(columns_b_[j++].second);
+      sink.push(std::min(column_a, column_b), value);
+    }
+    if (d == 1 && contact.creep.compliance > 0.0)
+      sink.push(sink.addAuxiliary(1.0 / contact.creep.compliance), 1.0);  // u_d + k r_d: a velocity of mass 1/k
+    const double base = axes[d]->dot(relative_base);
+    sink.endRow(base + (d == 0   ? shift.shift
+                        : d == 1 ? contact.creep.offset
+                                 : 0.0),
+                {d == 0 ? WorkAccount::IMPACT : WorkAccount::FRICTION, base, nullptr});
+  }
+  sink.endLaw({LawType::COULOMB_3D, material.friction});
+  rows_.push_back(contact);
+}
+
+void ContactRows::guess(const StepContext& context, Solution& guess) const
+{
+  for (const ContactRow& row : rows_)
+  {
+    const ContactPoint& point = (*context.points)[row.point];
+    const ContactState* last_contact = last(point.id);
+    if (last_contact == nullptr || row.closing)
+      continue;
+    guess.r[row.row] = point.normal.dot(last_contact->impulse);
+    guess.r[row.row + 1] = row.tangent_1.dot(last_contact->impulse);
+    guess.r[row.row + 2] = row.tangent_2.dot(last_contact->impulse);
+  }
+}
+
+void ContactRows::accept(const StepContext& context, const StepAnswer& answer)
+{
+  contacts_.clear();
+  for (const ContactRow& row : rows_)
+  {
+    const ContactPoint& point = (*context.points)[row.point];
+    const Eigen::Vector3d r = answer.solution.r.segment<3>(row.row);
+    Eigen::Vector3d u = answer.solution.u.segment<3>(row.row);
+    u[0] -= row.shift;
+    if (row.creep.compliance > 0.0)
+      u[1] -= row.creep.compliance * r[1] + row.creep.offset;
+    ContactState state;
+    state.id = point.id;
+    state.shape_a = point.shape_a;
+    state.shape_b = point.shape_b;
+    state.position = point.position;
+    state.normal = point.normal;
+    state.tangent_1 = row.tangent_1;
+    state.tangent_2 = row.tangent_2;
+    state.gap = point.gap;
+    state.friction = row.friction;
+    state.restitution = row.restitution;
+    state.impulse = r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2;
+    state.velocity = u[0] * point.normal + u[1] * row.tangent_1 + u[2] * row.tangent_2;
+    state.cone_margin = row.friction * r[0] - r.tail<2>().norm();
+    state.residual = row.law < answer.law_errors.size() ? answer.law_errors[row.law] : 0.0;
+    state.mode = modeOf(row, r, u, context.tolerance);
+    contacts_.push_back(state);
+  }
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,50 @@
+#include "frictional_contact_sim/dynamics/row_sink.h"
+
+namespace frictional_contact_sim
+{
+void RowSink::clear(int velocities)
+{
+  velocities_ = velocities;
+  closing_ = false;
+  h_.clear();
+  g_.clear();
+  w_.clear();
+  b_.clear();
+  laws_.clear();
+  auxiliary_mass_.clear();
+  row_records_.clear();
+  bilateral_records_.clear();
+}
+
+void RowSink::endRow(double w, const RowRecord& record)
+{
+  h_.endRow();
+  w_.push_back(w);
+  row_records_.push_back(record);
+}
+
+int RowSink::addAuxiliary(double mass)
+{
+  auxiliary_mass_.push_back(mass);
+  return columns() - 1;
+}
+
+void RowSink::endBilateral(double b, const RowRecord& record)
+{
+  g_.endRow();
+  b_.push_back(b);
+  bilateral_records_.push_back(record);
+}
+
+void RowSink::copyTo(bool impact, IncrementalProblem& problem) const
+{
+  h_.copyTo(columns(), problem.H);
+  g_.copyTo(columns(), problem.G);
+  problem.w = Eigen::Map<const Eigen::VectorXd>(w_.data(), static_cast<Eigen::Index>(w_.size()));
+  problem.b = Eigen::Map<const Eigen::VectorXd>(b_.data(), static_cast<Eigen::Index>(b_.size()));
+  if (impact)
+    problem.b.setZero();
+  problem.laws = laws_;
+}
+
+}  // namespace frictional_contact_sim

@@ -1,0 +1,168 @@
+#include "frictional_contact_sim/simulation/state.h"
+
+#include <cstring>
+
+#include "frictional_contact_sim/simulation/state_archive.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+void visit(StateArchive& archive, JointDrive& drive)
+{
+  constexpr std::uint64_t MODES = 3;
+  archive.enumeration("command.mode", drive.command.mode, MODES);
+  archive.number("command.target", drive.command.target);
+  archive.number("command.kp", drive.command.kp);
+  archive.number("command.kd", drive.command.kd);
+  archive.number("command.max_effort", drive.command.max_effort);
+  archive.number("effort_limit", drive.effort_limit);
+  archive.number("effort", drive.effort);
+}
+
+void visit(StateArchive& archive, ExternalWrench& wrench)
+{
+  archive.text("wrench.link", wrench.link);
+  archive.index("wrench.frame", wrench.frame);
+  archive.vector("wrench.force", wrench.force);
+  archive.vector("wrench.torque", wrench.torque);
+  archive.vector("wrench.point", wrench.point);
+  archive.flag("wrench.world_frame", wrench.world_frame);
+  archive.number("wrench.from", wrench.from);
+  archive.number("wrench.until", wrench.until);
+}
+
+void visit(StateArchive& archive, BodyState& body)
+{
+  archive.vector("q", body.q);
+  archive.vector("v", body.v);
+  archive.vector("base_pose", body.base_pose.matrix());
+  for (JointDrive& drive : archive.fixedList("drives", body.drives))
+    visit(archive, drive);
+  for (ExternalWrench& wrench : archive.list("wrenches", body.wrenches))
+    visit(archive, wrench);
+}
+
+void visit(StateArchive& archive, ContactState& contact)
+{
+  constexpr std::uint64_t MODES = 4;
+  archive.integer("contact.id", contact.id);
+  archive.index("contact.shape_a", contact.shape_a);
+  archive.index("contact.shape_b", contact.shape_b);
+  archive.vector("contact.position", contact.position);
+  archive.vector("contact.normal", contact.normal);
+  archive.vector("contact.tangent_1", contact.tangent_1);
+  archive.vector("contact.tangent_2", contact.tangent_2);
+  archive.number("contact.gap", contact.gap);
+  archive.number("contact.friction", contact.friction);
+  archive.number("contact.restitution", contact.restitution);
+  archive.vector("contact.impulse", contact.impulse);
+  archive.vector("contact.velocity", contact.velocity);
+  archive.enumeration("contact.mode", contact.mode, MODES);
+  archive.number("contact.residual", contact.residual);
+  archive.number("contact.cone_margin", contact.cone_margin);
+}
+
+void visit(StateArchive& archive, EnergyLedger& energy)
+{
+  archive.number("energy.kinetic", energy.kinetic);
+  archive.number("energy.potential", energy.potential);
+  archive.number("energy.actuators", energy.actuators);
+  archive.number("energy.friction", energy.friction);
+  archive.number("energy.impact", energy.impact);
+  archive.number("energy.joints", energy.joints);
+  archive.number("energy.balance_error", energy.balance_error);
+}
+
+class Hash : public StateArchive
+{
+public:
+  void number(const std::string&, double& value) override
+  {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    add(bits);
+  }
+  void integer(const std::string&, std::uint64_t& value) override { add(value); }
+  void text(const std::string&, std::string& value) override
+  {
+    for (const char letter : value)
+      add(static_cast<unsigned char>(letter));
+  }
+  std::uint64_t value() const { return state_; }
+
+private:
+  void add(std::uint64_t bits)
+  {
+    for (int byte = 0; byte < 8; ++byte)
+      state_ = (state_ ^ ((bits >> (8 * byte)) & 0xffU)) * 1099511628211ULL;
+  }
+
+  std::uint64_t state_ = 14695981039346656037ULL;
+};
+
+/** Every entry as text: its name and its bits. */
+class Listing : public StateArchive
+{
+public:
+  void number(const std::string& name, double& value) override
+  {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    entries.emplace_back(name, std::to_string(bits));
+  }
+  void integer(const std::string& name, std::uint64_t& value) override
+  {
+    entries.emplace_back(name, std::to_string(value));
+  }
+  void text(const std::string& name, std::string& value) override { entries.emplace_back(name, value); }
+
+  std::vector<std::pair<std::string, std::string>> entries;
+};
+
+/** For archives that only read. */
+void show(StateArchive& archive, const SimulationState& state)
+{
+  visitState(archive, const_cast<SimulationState&>(state));
+}
+}  // namespace
+
+void visitState(StateArchive& archive, SimulationState& state)
+{
+  archive.integer("step", state.step);
+  archive.number("dt", state.dt);
+  archive.number("clock.start", state.clock.start);
+  archive.integer("clock.steps", state.clock.steps);
+  archive.number("scenario_clock.start", state.scenario_clock.start);
+  archive.integer("scenario_clock.steps", state.scenario_clock.steps);
+  for (BodyState& body : archive.fixedList("bodies", state.bodies))
+    visit(archive, body);
+  for (ContactState& contact : archive.list("contacts", state.rows.contacts))
+    visit(archive, contact);
+  for (RowMemory& memory : archive.fixedList("row memories", state.rows.memory))
+    for (double& impulse : archive.fixedList("impulses of " + memory.name, memory.impulses))
+      archive.number(memory.name, impulse);
+  visit(archive, state.energy);
+  archive.number("energy_start", state.energy_start);
+}
+
+std::uint64_t hashOf(const SimulationState& state)
+{
+  Hash hash;
+  show(hash, state);
+  return hash.value();
+}
+
+std::string firstDifference(const SimulationState& a, const SimulationState& b)
+{
+  Listing list_a;
+  Listing list_b;
+  show(list_a, a);
+  show(list_b, b);
+  for (std::size_t i = 0; i < list_a.entries.size() && i < list_b.entries.size(); ++i)
+    if (list_a.entries[i] != list_b.entries[i])
+      return list_a.entries[i].first + " (entry " + std::to_string(i) + ")";
+  return list_a.entries.size() == list_b.entries.size() ? "" : "the number of entries";
+}
+
+}  // namespace frictional_contact_sim

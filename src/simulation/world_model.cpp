@@ -1,0 +1,251 @@
+#include "frictional_contact_sim/simulation/world_model.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "frictional_contact_sim/model/dynamics_algorithms.h"
+#include "frictional_contact_sim/model/kinematics.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr double LARGEST_NUMBER =
+    1e6;  ///< of an initial position or velocity [SI]: beyond it nothing is meant seriously
+constexpr double DROP_HEIGHT = 0.001;  ///< lowest collision point above the ground where no pose is given [m]
+
+[[noreturn]] void fail(const std::string& body, const std::string& message)
+{
+  throw std::invalid_argument("body '" + body + "': " + message);
+}
+
+/** A body while it is loaded. */
+struct Draft
+{
+  BodyModel& model;
+  BodyState& state;
+};
+
+int findSingleJoint(const BodyModel& model, const std::string& name, const std::string& purpose)
+{
+  const int joint = model.tree.findJoint(name);
+  if (joint < 0)
+    fail(model.name, purpose + " names an unknown joint '" + name + "'");
+  if (velocitySize(model.tree.joints[joint].type) != 1)
+    fail(model.name, purpose + ": joint '" + name + "' has not exactly one coordinate");
+  return joint;
+}
+
+/** Joint positions: as given; else zero, or the nearest limit where zero is out of range. Mimic joints follow. */
+void setInitialJoints(const BodySpec& spec, const Draft& body, std::vector<std::string>& warnings)
+{
+  const BodyModel& model = body.model;
+  for (const Joint& joint : model.tree.joints)
+    if (velocitySize(joint.type) == 1)
+    {
+      const double start = std::clamp(0.0, joint.limit.lower, joint.limit.upper);
+      body.state.q[joint.q_index] = start;
+      if (start != 0.0 && spec.joints.count(joint.name) == 0)
+        warnings.push_back("body '" + model.name + "': joint '" + joint.name + "' starts at its limit " +
+                           std::to_string(start) + ", since zero is outside its range");
+    }
+  for (const auto& [name, init] : spec.joints)
+  {
+    if (!(std::abs(init.position) < LARGEST_NUMBER) || !(std::abs(init.velocity) < LARGEST_NUMBER))
+      fail(model.name, "joint '" + name + "' starts beyond 1e6 in position or velocity");
+    const Joint& joint = model.tree.joints[findSingleJoint(model, name, "joints")];
+    if (init.position < joint.limit.lower || init.position > joint.limit.upper)
+      warnings.push_back("body '" + model.name + "': joint '" + name + "' starts at " + std::to_string(init.position) +
+                         ", outside its limits " + std::to_string(joint.limit.lower) + " .. " +
+                         std::to_string(joint.limit.upper));
+    body.state.q[joint.q_index] = init.position;
+    body.state.v[joint.v_index] = init.velocity;
+  }
+  for (const Joint& joint : model.tree.joints)
+    if (joint.mimic.joint >= 0)
+    {
+      const Joint& followed = model.tree.joints[joint.mimic.joint];
+      body.state.q[joint.q_index] = joint.mimic.multiplier * body.state.q[followed.q_index] + joint.mimic.offset;
+      body.state.v[joint.v_index] = joint.mimic.multiplier * body.state.v[followed.v_index];
+    }
+}
+
+void setBasePose(const Draft& body, const Eigen::Isometry3d& pose)
+{
+  if (body.model.tree.joints.front().type == JointType::FLOATING)
+  {
+    body.state.q.head<3>() = pose.translation();
+    body.state.q.segment<4>(3) = Eigen::Quaterniond(pose.linear()).normalized().coeffs();
+  }
+  else
+    body.state.base_pose = pose;
+}
+
+void setInitialBase(const BodySpec& spec, const Draft& body)
+{
+  const BodyModel& model = body.model;
+  const bool floating = model.tree.joints.front().type == JointType::FLOATING;
+  const Eigen::Vector3d position = spec.pose ? Eigen::Vector3d(spec.pose->translation()) : Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d* vector : {&position, &spec.linear_velocity, &spec.angular_velocity})
+    if (!(vector->cwiseAbs().maxCoeff() < LARGEST_NUMBER))
+      fail(model.name, "pose or velocity has a component that is not a number below 1e6");
+  setBasePose(body, spec.pose.value_or(Eigen::Isometry3d::Identity()));
+  if (floating)
+  {
+    body.state.v.head<3>() = spec.linear_velocity;
+    body.state.v.segment<3>(3) = spec.angular_velocity;
+  }
+  else if (!spec.linear_velocity.isZero() || !spec.angular_velocity.isZero())
+    fail(model.name, "velocity is for a floating base; a fixed base takes 'motion'");
+  if (!spec.motion)
+    return;
+  if (floating)
+    fail(model.name, "motion is for a fixed base, but its base is floating");
+  if (model.tree.nv > 0 && !spec.motion->second.isZero())
+    fail(model.name, "motion.angular is for a body without joints, this one has " + std::to_string(model.tree.nv));
+  body.model.base_motion = {spec.motion->first, spec.motion->second, true};
+}
+
+void setCommands(const BodySpec& spec, const Draft& body)
+{
+  for (const auto& [name, command] : spec.commands)
+  {
+    const int joint = findSingleJoint(body.model, name, "commands");
+    body.state.drives[joint] = makeDrive(body.model, joint, command);
+  }
+  if (!spec.hold_initial_position)
+    return;
+  for (size_t j = 0; j < body.state.drives.size(); ++j)
+  {
+    const int joint = static_cast<int>(j);
+    const Joint& moved = body.model.tree.joints[j];
+    if (!body.model.isActuated(joint) || spec.commands.count(moved.name) > 0)
+      continue;
+    JointCommand hold;
+    hold.mode = JointCommand::Mode::POSITION;
+    hold.target = body.state.q[moved.q_index];
+    body.state.drives[joint] = makeDrive(body.model, joint, hold);
+  }
+}
+
+/** URDF's effort="0" often means that nobody filled it in. */
+void warnOfDeadDrives(const BodyModel& model, std::vector<std::string>& warnings)
+{
+  for (size_t j = 0; j < model.tree.joints.size(); ++j)
+    if (model.isActuated(static_cast<int>(j)) && model.tree.joints[j].limit.effort == 0.0)
+      warnings.push_back("body '" + model.name + "': joint '" + model.tree.joints[j].name +
+                         "' has the effort limit 0: commands do nothing there");
+}
+
+void setWrenches(const BodySpec& spec, const Draft& body)
+{
+  for (ExternalWrench wrench : spec.wrenches)
+  {
+    wrench.frame = body.model.tree.findFrame(wrench.link);
+    if (wrench.frame < 0)
+      fail(body.model.name, "wrenches names an unknown link '" + wrench.link + "'");
+    body.state.wrenches.push_back(wrench);
+  }
+}
+
+BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
+{
+  LoadedModel loaded = spec.urdf_path.empty() ? loadUrdf(spec.urdf_xml, "robot_description", spec.base)
+                                              : loadUrdfFile(spec.urdf_path, spec.base);
+  for (const std::string& warning : loaded.warnings)
+    warnings.push_back("body '" + spec.name + "': " + warning);
+  BodyModel model(std::move(loaded.model));
+  const auto limited = std::count_if(model.tree.joints.begin(), model.tree.joints.end(),
+                                     [](const Joint& joint) { return std::isfinite(joint.limit.velocity); });
+  if (limited > 0)
+    warnings.push_back("body '" + spec.name + "': velocity limits of joints are not enforced (" +
+                       std::to_string(limited) + " joints)");
+  model.name = spec.name;
+  return model;
+}
+
+/** Adds the body's shapes, puts it on the ground where no pose is given, and gives it commands and wrenches. */
+void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world)
+{
+  const int handle = world.collision.addRobot(body.model.tree);  // bodies and handles count alike
+  for (const auto& [link_1, link_2] : spec.disable_collisions)
+    world.collision.disablePair(handle, link_1, link_2);
+  Body moved(body.model, body.state);
+  updateEnd(moved);
+  world.collision.setPoses(handle, moved.end);
+  const double lowest = world.collision.lowestPoint(handle);
+  if (!spec.pose && body.model.tree.joints.front().type == JointType::FLOATING && std::isfinite(lowest))
+  {
+    body.state.q[2] += (world.scenario.ground ? world.scenario.ground->height : 0.0) + DROP_HEIGHT - lowest;
+    updateEnd(moved);
+    world.collision.setPoses(handle, moved.end);
+  }
+  computeMassMatrix(body.model.tree, moved.end);
+  if (!moved.end.mass_matrix.allFinite() || !factorizeMassMatrix(body.model.tree, body.model.damping, moved.end))
+    fail(body.model.name, "its mass matrix is not positive definite at the initial position");
+  for (size_t j = 0; j < body.model.tree.joints.size(); ++j)
+    if (body.model.isActuated(static_cast<int>(j)))
+      body.model.servo_inertia[j] = servoInertia(body.model, moved.end, static_cast<int>(j));
+  setCommands(spec, body);
+  warnOfDeadDrives(body.model, world.warnings);
+  setWrenches(spec, body);
+}
+
+std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
+{
+  std::vector<SurfaceSide> sides;
+  for (int handle = 0; handle < world.collision.shapeCount(); ++handle)
+  {
+    const ShapeInfo& shape = world.collision.shape(handle);
+    if (shape.robot < 0)
+      sides.push_back({"ground", world.scenario.ground->friction.value_or(-1.0)});
+    else
+      sides.push_back(
+          {world.scenario.bodies[shape.robot].material, world.bodies[shape.robot].tree.shapes[shape.index].friction});
+  }
+  return sides;
+}
+
+void checkScenario(const Scenario& scenario)
+{
+  if (!(scenario.time_step > 0.0) || !std::isfinite(scenario.time_step))
+    throw std::invalid_argument("time_step is " + std::to_string(scenario.time_step) +
+                                ", expected a positive finite number of seconds");
+  if (!scenario.gravity.allFinite())
+    throw std::invalid_argument("gravity has a component that is not finite");
+  scenario.stopping.validate();
+}
+}  // namespace
+
+std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
+{
+  checkScenario(scenario);
+  const auto begin = std::chrono::steady_clock::now();
+  auto world = std::make_shared<WorldModel>();
+  world->scenario = scenario;
+  for (const BodySpec& spec : scenario.bodies)
+  {
+    world->bodies.push_back(loadBody(spec, world->warnings));
+    world->start.emplace_back(world->bodies.back());
+    const Draft body{world->bodies.back(), world->start.back()};
+    setInitialJoints(spec, body, world->warnings);
+    setInitialBase(spec, body);
+  }
+  for (size_t b = 0; b < world->bodies.size(); ++b)
+    placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world);
+  if (scenario.ground)
+  {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().z() = scenario.ground->height;
+    world->collision.addStatic(HalfSpace{}, pose, "ground");
+  }
+  for (const std::string& pair : world->collision.disableOverlaps())
+    world->warnings.push_back("links overlap at the start and will not collide: " + pair);
+  world->pairs = PairTable(scenario.materials, surfaceSides(*world));
+  world->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return world;
+}
+
+}  // namespace frictional_contact_sim
