@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "frictional_contact_sim/ros/parameter_error.h"
+
 namespace frictional_contact_sim
 {
 namespace

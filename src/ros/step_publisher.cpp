@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "frictional_contact_sim/ros/parameter_error.h"
+
 namespace frictional_contact_sim
 {
 namespace

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/ros/parameter_error.h"
 #include "frictional_contact_sim/simulation/scenario.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 
@@ -20,13 +20,6 @@ class XmlRpcValue;
 
 namespace frictional_contact_sim
 {
-/** @brief One line: parameter, what was found, what was expected. */
-class ParameterError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
 /** @brief Gains of ~command/position; unset numbers get defaults from the joint's inertia. */
 struct ServoGains
 {
