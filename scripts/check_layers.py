@@ -3,6 +3,7 @@
 
 A module may include itself, the modules below it that the table names (and what those may include), the C++ standard
 library and Eigen, and the third-party headers listed here; these only below src/, FCL and urdfdom in .cpp files.
+Headers that include each other in a circle fail too: #pragma once hides that from the compiler.
 """
 import pathlib
 import re
@@ -94,6 +95,35 @@ def violation(path, quoted, name):
     return "not in the table of scripts/check_layers.py"
 
 
+def included(path):
+    """The files of this package that a file includes."""
+    for line in path.read_text().splitlines():
+        match = INCLUDE.match(line)
+        if match:
+            name = match.group(2)
+            yield from (file for file in (ROOT / "include" / name, path.parent / name) if file.is_file())
+
+
+def circles(files):
+    """One line for each circle of includes, found by walking down from every file."""
+    state, chain = {}, []
+
+    def walk(path):
+        state[path] = "open"
+        chain.append(path)
+        for target in included(path):
+            if state.get(target) == "open":
+                yield " -> ".join(file.name for file in chain[chain.index(target):] + [target])
+            elif target not in state:
+                yield from walk(target)
+        chain.pop()
+        state[path] = "done"
+
+    for path in files:
+        if path not in state:
+            yield from walk(path)
+
+
 def main():
     files = [path for folder in ("include", "src", "test", "benchmark") for suffix in ("*.h", "*.cpp")
              for path in sorted((ROOT / folder).rglob(suffix))]
@@ -111,6 +141,9 @@ def main():
             if reason:
                 print(f"{path.relative_to(ROOT)}:{number}: {match.group(2)}: {reason}")
                 failures += 1
+    for circle in circles(files):
+        print(f"circle of includes: {circle}")
+        failures += 1
     print(f"check_layers: {len(files)} files, {failures} violations")
     return 1 if failures or not files else 0
 

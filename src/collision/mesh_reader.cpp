@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "frictional_contact_sim/collision/polyhedron.h"
-#include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/model/model_error.h"
 
 namespace frictional_contact_sim
 {

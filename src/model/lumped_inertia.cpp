@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
-#include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/model/model_error.h"
 #include "urdf_schema.h"
 
 namespace frictional_contact_sim

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "frictional_contact_sim/model/model_error.h"
 #include "urdf_schema.h"
 
 namespace frictional_contact_sim

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/model/model_error.h"
 
 namespace frictional_contact_sim
 {
@@ -310,14 +310,6 @@ std::vector<std::string> OmissionTally::lines() const
     lines.push_back(entry.what + " (" + count + "at " + entry.first + ")");
   }
   return lines;
-}
-
-void failAt(const std::string& source, int line, const std::string& text)
-{
-  std::string message = source + (line > 0 ? ":" + std::to_string(line) : "") + ": " + text;
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  throw ModelError(message);
 }
 
 std::string describeOwner(const XMLElement& element)

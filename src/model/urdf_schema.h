@@ -37,9 +37,6 @@ private:
   std::vector<Entry> entries_;
 };
 
-/** @brief Throws ModelError "source:line: text", one line whatever the text holds. */
-[[noreturn]] void failAt(const std::string& source, int line, const std::string& text);
-
 /** @brief "link 'foot'" or "joint 'knee'": the named element around (or at) this one; "<robot>" at the top. */
 std::string describeOwner(const tinyxml2::XMLElement& element);
 

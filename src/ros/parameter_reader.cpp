@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "frictional_contact_sim/ros/parameters.h"
+#include "frictional_contact_sim/ros/parameter_error.h"
 
 namespace frictional_contact_sim
 {

@@ -3,6 +3,7 @@
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include "frictional_contact_sim/ros/parameter_error.h"
 #include "frictional_contact_sim/ros/simulator_node.h"
 
 namespace frictional_contact_sim

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "frictional_contact_sim/simulation/scenario_error.h"
 #include "yaml_reader.h"
 
 namespace frictional_contact_sim

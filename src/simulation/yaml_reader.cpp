@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "frictional_contact_sim/simulation/scenario_error.h"
+
 namespace frictional_contact_sim
 {
 std::string YamlReader::found() const

@@ -7,8 +7,6 @@
 #include <initializer_list>
 #include <string>
 
-#include "frictional_contact_sim/simulation/scenario_loader.h"
-
 namespace frictional_contact_sim
 {
 /** A node together with its file and its key path, such as bodies[0].pose.xyz. */

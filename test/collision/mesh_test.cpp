@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "collision_test_support.h"
-#include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/model/model_error.h"
 
 namespace frictional_contact_sim
 {

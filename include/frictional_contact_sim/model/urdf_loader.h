@@ -10,22 +10,14 @@
  * must keep the mass matrix positive definite (then it is named in a warning). The body of a fixed base needs none.
  * Visuals are not read: their meshes may be missing.
  */
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/model/multibody_model.h"
 
 namespace frictional_contact_sim
 {
-/** @brief A file or its content is not what it must be: what() is one line with the file, what was found and expected.
- */
-class ModelError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
 enum class BaseType
 {
   AUTO,  ///< Gazebo's convention: fixed when the root link is named `world`, else floating

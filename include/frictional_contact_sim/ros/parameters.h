@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/ros/parameter_error.h"
 #include "frictional_contact_sim/simulation/scenario.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 
@@ -20,13 +20,6 @@ class XmlRpcValue;
 
 namespace frictional_contact_sim
 {
-/** @brief One line: parameter, what was found, what was expected. */
-class ParameterError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
 /** @brief Gains of ~command/position; unset numbers get defaults from the joint's inertia. */
 struct ServoGains
 {
@@ -49,6 +42,7 @@ struct NodeParameters
   std::vector<std::string> wait_for_subscribers;  ///< topics that must have a subscriber before the first step
   std::int64_t num_steps = 0;  ///< exit after so many; 0 = never
   std::string dump_dir;  ///< FCLib files of failed steps; empty = none
+  int max_dumps = 20;  ///< at most so many files a run
   std::string bag;  ///< file that a recorder is to write: its folder is checked
   bool publish_base_tf = true;
   std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others

@@ -3,20 +3,13 @@
  * @file scenario_loader.h
  * @brief YAML (yaml-cpp) to Scenario: the one loader for node, tools, tests and benchmarks.
  */
-#include <stdexcept>
 #include <string>
 
 #include "frictional_contact_sim/simulation/scenario.h"
+#include "frictional_contact_sim/simulation/scenario_error.h"
 
 namespace frictional_contact_sim
 {
-/** @brief One line: file, key, what was found and what was expected. */
-class ScenarioError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
 /** @throws ScenarioError */
 Scenario loadScenarioFile(const std::string& path);
 /** @param source name for messages; relative paths are relative to its folder. @throws ScenarioError */
