@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
+#include "frictional_contact_sim/dynamics/row_sources.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
-#include "frictional_contact_sim/simulation/world.h"
+#include "frictional_contact_sim/simulation/world_model.h"
 #include "frictional_contact_sim/solver/registry.h"
 
 namespace fcs = frictional_contact_sim;
@@ -39,38 +40,36 @@ fcs::Simulator& standing()
 /** The robot of the standing simulation with everything that a phase needs, outside of it. */
 struct Stage
 {
-  Stage() : world(fcs::loadWorld(quadruped())), assembly(world.robots, world.collision, world.pairs)
+  Stage()
+    : world(fcs::loadWorldModel(quadruped()))
+    , state(standing().state())
+    , collision(world->collision)
+    , bodies(1, fcs::Body(world->bodies[0], state.bodies[0]))
+    , assembly(bodies, fcs::makeRowSources(bodies, collision, world->pairs, state.rows), state.rows)
   {
-    world.robots[0].q = standing().position(0);
-    world.robots[0].v = standing().velocity(0);
-    fcs::Robot& robot = world.robots[0];
-    robot.q_middle = robot.q;
-    fcs::forwardKinematics(robot.model, robot.q_middle, robot.middle);
-    fcs::computeMassMatrix(robot.model, robot.middle);
-    world.collision.setPoses(0, robot.middle);
+    fcs::moveToMidpoint(bodies[0], context.dt);
+    collision.setPoses(0, bodies[0].middle);
     guess = standing().solution();
-    for (size_t j = 0; j < robot.actuators.size(); ++j)
-      if (robot.isActuated(static_cast<int>(j)))
-        robot.actuators[j].impulse =
-            fcs::servoImpulse(robot.actuators[j].command, robot.q[robot.model.joints[j].q_index],
-                              robot.v[robot.model.joints[j].v_index], settings.dt);
   }
-  fcs::World world;
+  std::shared_ptr<const fcs::WorldModel> world;
+  fcs::SimulationState state;
+  fcs::CollisionWorld collision;
+  std::vector<fcs::Body> bodies;
   fcs::StepAssembly assembly;
-  fcs::StepSettings settings;
+  fcs::StepContext context;
   fcs::Solution guess;
 };
 
 void kinematicsAndMassMatrix(benchmark::State& state)
 {
   Stage stage;
-  fcs::Robot& robot = stage.world.robots[0];
+  fcs::Body& body = stage.bodies[0];
   for (auto _ : state)
   {
-    fcs::forwardKinematics(robot.model, robot.q, robot.middle);
-    fcs::forwardVelocities(robot.model, robot.v, robot.middle);
-    fcs::computeMassMatrix(robot.model, robot.middle);
-    benchmark::DoNotOptimize(robot.middle.mass_matrix.data());
+    fcs::forwardKinematics(body.model.tree, body.state.q, body.middle);
+    fcs::forwardVelocities(body.model.tree, body.state.v, body.middle);
+    fcs::computeMassMatrix(body.model.tree, body.middle);
+    benchmark::DoNotOptimize(body.middle.mass_matrix.data());
   }
 }
 
@@ -79,20 +78,22 @@ void collision(benchmark::State& state)
   Stage stage;
   for (auto _ : state)
   {
-    stage.world.collision.setPoses(0, stage.world.robots[0].middle);
-    benchmark::DoNotOptimize(stage.world.collision.detect(1e-3).data());
+    stage.collision.setPoses(0, stage.bodies[0].middle);
+    benchmark::DoNotOptimize(stage.collision.detect(1e-3).data());
   }
-  state.counters["contacts"] = static_cast<double>(stage.world.collision.detect(1e-3).size());
+  state.counters["contacts"] = static_cast<double>(stage.collision.detect(1e-3).size());
 }
 
 void assembly(benchmark::State& state)
 {
   Stage stage;
-  const std::vector<fcs::ContactPoint> points = stage.world.collision.detect(1e-3);
+  const std::vector<fcs::ContactPoint> points = stage.collision.detect(1e-3);
   for (auto _ : state)
   {
-    stage.assembly.assembleRows(points, stage.settings);
-    stage.assembly.assembleDynamics(stage.guess, stage.settings);
+    stage.context.points = &points;
+    stage.assembly.begin(stage.context);
+    stage.assembly.assembleRows(stage.context);
+    stage.assembly.assembleDynamics(stage.context, stage.guess);
     benchmark::DoNotOptimize(stage.assembly.problem().f.data());
   }
 }

@@ -77,7 +77,11 @@ BodyState::BodyState(const BodyModel& model)
   , drives(model.tree.joints.size())
 {
   for (size_t j = 0; j < drives.size(); ++j)
+  {
+    drives[j].command.kp = 0.0;
+    drives[j].command.kd = 0.0;
     drives[j].effort_limit = model.tree.joints[j].limit.effort;
+  }
 }
 
 Body::Body(const BodyModel& body_model, BodyState& body_state)
@@ -192,7 +196,11 @@ JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& comm
   drive.command = command;
   drive.effort_limit = std::min(moved.limit.effort, command.max_effort);
   if (command.mode == JointCommand::Mode::EFFORT)
+  {
+    drive.command.kp = 0.0;
+    drive.command.kd = 0.0;
     drive.command.target = std::clamp(command.target, -drive.effort_limit, drive.effort_limit);
+  }
   else
     fillDefaultGains(model.servo_inertia[joint], drive.command);
   return drive;

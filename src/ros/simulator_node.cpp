@@ -65,12 +65,13 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
     ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
   }
   simulator_.setFailurePolicy(parameters.on_failure);
-  simulator_.setDumpFolder(parameters.dump_dir);
+  simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
   setServoGains();
   advertiseServices(private_node);
   subscribeCommands(private_node);
   ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
+  outcome_ = judge("impact at the start");
 }
 
 /** @brief ~servo_gains for the servos that hold the initial position. */
@@ -186,6 +187,7 @@ void SimulatorNode::setPaused(bool paused)
 void SimulatorNode::reset()
 {
   simulator_.reset();
+  outcome_ = judge("impact at the start");
 }
 
 void SimulatorNode::resetTime()
@@ -231,29 +233,25 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
   return true;
 }
 
-/** @brief A run that goes on may fail at every step: it gets a line a second, and no more than ~max_dumps files. */
-void SimulatorNode::reportFailure(const StepSummary& summary)
+/** @brief A run that goes on may fail at every step: it gets a line a second. */
+void SimulatorNode::reportFailure(const std::string& where)
 {
-  const bool dumped = dumps_ < parameters_.max_dumps && !summary.fclib_file.empty();
+  const StepOutcome& outcome = simulator_.outcome();
   if (const std::optional<int> held_back = failure_lines_.pass(wallSeconds()))
   {
-    ROS_WARN_STREAM("step " << summary.step << ": " << toString(summary.status) << " after " << summary.iterations
-                            << " iterations, residual " << summary.residual
-                            << (dumped ? ", problem in " + summary.fclib_file : "")
-                            << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
-  }
-  if (dumped && ++dumps_ == parameters_.max_dumps)
-  {
-    simulator_.setDumpFolder("");
-    ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir << ", no more are written");
+    ROS_WARN_STREAM(where << ": " << toString(outcome.status) << ", residual " << outcome.residual
+                          << (outcome.message.empty() ? "" : ", " + outcome.message)
+                          << (outcome.fclib_file.empty() ? "" : ", problem in " + outcome.fclib_file)
+                          << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
   }
 }
 
-SimulatorNode::Outcome SimulatorNode::judge(const StepSummary& summary)
+/** @brief What the policy makes of the last step, reset or set. @param where of the line that is logged */
+SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 {
-  if (summary.status != SolverStatus::CONVERGED)
+  if (!simulator_.outcome().converged())
   {
-    reportFailure(summary);
+    reportFailure(where);
     if (parameters_.on_failure == FailurePolicy::STOP)
     {
       return Outcome::FAILED;
@@ -272,7 +270,6 @@ SimulatorNode::Outcome SimulatorNode::judge(const StepSummary& summary)
 SimulatorNode::Outcome SimulatorNode::advance()
 {
   simulator_.step();
-  const StepSummary& summary = simulator_.report();
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_.publish(pacer_.realTimeFactor());
@@ -281,7 +278,7 @@ SimulatorNode::Outcome SimulatorNode::advance()
   {
     holdForSubscribers();
   }
-  return judge(summary);
+  return judge("step " + std::to_string(simulator_.report().step));
 }
 
 /** @brief Full queues hold the run, they never drop. */

@@ -11,8 +11,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr int MOST_DUMPS = 20;  ///< problems of one simulation: the first ones say what is wrong
-
 /** `prefix`, with a number where another simulator of this process dumps there already. */
 std::string uniquePrefix(const std::string& prefix)
 {
@@ -100,22 +98,23 @@ int Simulator::Impl::countIslands()
   return islands;
 }
 
-void Simulator::Impl::dumpProblem()
+void Simulator::Impl::dumpProblem(const std::string& when)
 {
-  if (dumps >= MOST_DUMPS)
+  if (dump_folder.empty())
+    return;
+  if (dumps_left == 0)
   {
-    outcome.fclib_file = "not written: " + std::to_string(MOST_DUMPS) + " files of this run are there";
+    outcome.fclib_file = "not written: this run has written as many as it may";
     return;
   }
-  ++dumps;
-  const std::string step = context.impact ? "start" : "step_" + std::to_string(state.step + 1);
+  --dumps_left;
   if (dump_name.empty())
     dump_name = uniquePrefix(dump_folder + "/" + scenario.name);
-  outcome.fclib_file = dump_name + "_" + step + ".hdf5";
+  outcome.fclib_file = dump_name + "_" + when + ".hdf5";
   try
   {
     FclibInfo info;
-    info.title = scenario.name + " " + step;
+    info.title = scenario.name + " " + when;
     info.description =
         "w contains the shift of the normal law (gap/dt, restitution); bounded servos and dry joint "
         "friction are encoded as problem/fclib.h says";

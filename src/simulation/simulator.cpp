@@ -144,8 +144,8 @@ void Simulator::Impl::impactSolve()
     assembly.makeGuess(context, guess);
     assembly.assembleDynamics(context, guess);
     solve();
-    if (result.status != SolverStatus::CONVERGED && !dump_folder.empty())
-      dumpProblem();
+    if (result.status != SolverStatus::CONVERGED)
+      dumpProblem("start");
     storeOutcome();
     if (isMotion(result.solution))
     {
@@ -360,10 +360,13 @@ void Simulator::setFailurePolicy(FailurePolicy policy)
   impl_->policy = policy;
 }
 
-void Simulator::setDumpFolder(const std::string& folder)
+void Simulator::setDumpFolder(const std::string& folder, int most)
 {
   impl_->dump_folder = folder;
   impl_->dump_name.clear();
+  impl_->dumps_left = most;
+  if (impl_->state.step == 0 && !impl_->outcome.converged())
+    impl_->dumpProblem("start");  // of the start, from before anybody could say where to
 }
 
 const IncrementalProblem& Simulator::problem() const

@@ -30,7 +30,7 @@ struct Simulator::Impl
   bool handleFailure();  ///< true when the state stands still
   void storeOutcome();
   void storeReport();
-  void dumpProblem();
+  void dumpProblem(const std::string& when);  ///< problem of a failed solve; its name goes into the outcome
   int countIslands();
 
   void applyState();
@@ -51,7 +51,7 @@ struct Simulator::Impl
   std::unique_ptr<Solver> solver;
   FailurePolicy policy = FailurePolicy::ACCEPT;
   std::string dump_folder;
-  int dumps = 0;
+  int dumps_left = 0;
   std::string dump_name;  ///< folder and name that no other simulator of this process uses
 
   Solution guess;

@@ -142,8 +142,8 @@ void Simulator::Impl::solve()
 void Simulator::Impl::advance()
 {
   const bool failed = result.status != SolverStatus::CONVERGED;
-  if (failed && !dump_folder.empty())
-    dumpProblem();
+  if (failed)
+    dumpProblem("step_" + std::to_string(state.step + 1));
   const bool held = failed && handleFailure();
   assembly.setMeanVelocity(result.solution);
   if (!held)

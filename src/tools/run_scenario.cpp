@@ -16,6 +16,7 @@
 #include "frictional_contact_sim/simulation/root_motion.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
+#include "frictional_contact_sim/simulation/state_file.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "tool_support.h"
 
@@ -36,6 +37,8 @@ struct Options
   std::string dump;
   int dump_every = 1;
   bool dump_local = false;
+  std::string load_state;
+  std::string save_state;
 };
 
 /** What is worst over all steps of a run. */
@@ -83,6 +86,11 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
 {
   RunSummary summary;
   summary.loading_seconds = simulator.loadingSeconds();
+  if (const fcs::StepOutcome& start = simulator.outcome(); !start.converged())
+  {
+    ++summary.failed_steps;
+    std::cerr << "run_scenario: impact at the start: " << toString(start.status) << ", " << start.message << '\n';
+  }
   const fcs::Scenario& scenario = simulator.scenario();
   const double count = std::round(scenario.duration / scenario.time_step);
   if (!(count < 1e12) || (count < 1.0 && scenario.duration > 0.0))
@@ -210,8 +218,12 @@ int runAll(const Options& options)
     if (i == 0)
       for (const std::string& warning : simulator->warnings())
         std::cerr << "warning: " << warning << '\n';
+    if (!options.load_state.empty())
+      fcs::loadState(*simulator, options.load_state);
     runs.push_back(run(*simulator, options));
   }
+  if (!options.save_state.empty())
+    fcs::saveState(*simulator, options.save_state);
   const bool identical = std::all_of(runs.begin(), runs.end(),
                                      [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
@@ -249,6 +261,11 @@ int main(int argc, char** argv)
   app.add_flag("--dump-local", options.dump_local,
                "dump the local problem (W, q) instead of the global one (M, f, H, w)")
       ->needs(dump);
+  app.add_option("--save-state", options.save_state, "file for the state at the end: --load-state goes on from it");
+  app.add_option("--load-state", options.load_state,
+                 "start from this state of the same bodies instead of the scenario's start; --duration is then what is "
+                 "simulated further")
+      ->check(CLI::ExistingFile);
   return fcs::tools::runTool(app, argc, argv,
                              [&]
                              {

@@ -46,8 +46,8 @@ private:
   void setServoGains();
 
   Outcome advance();
-  Outcome judge(const StepSummary& summary);
-  void reportFailure(const StepSummary& summary);
+  Outcome judge(const std::string& where);
+  void reportFailure(const std::string& where);
   void runStep();
   void idle();
   void holdForSubscribers();
@@ -65,7 +65,6 @@ private:
   DeliveryMonitor delivery_;
   Pacer pacer_;
   Throttle failure_lines_;
-  int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
   std::vector<ros::ServiceServer> services_;
   std::vector<ros::Subscriber> subscribers_;

@@ -98,8 +98,8 @@ public:
   /** @throws std::invalid_argument listing the valid names */
   void setSolver(const std::string& name);
   void setFailurePolicy(FailurePolicy policy);
-  /** @brief Problems of failed steps are written here as FCLib files; empty = nowhere. */
-  void setDumpFolder(const std::string& folder);
+  /** @brief The first `most` problems of failed steps are written here as FCLib files; empty = nowhere. */
+  void setDumpFolder(const std::string& folder, int most = 20);
   /** @brief The problem of the last step and its answer (for FCLib files and tests). */
   const IncrementalProblem& problem() const;
   const Solution& solution() const;
