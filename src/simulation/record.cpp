@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "frictional_contact_sim/problem/fclib.h"
-#include "frictional_contact_sim/problem/law_functions.h"
 #include "frictional_contact_sim/simulation/energy.h"
 #include "simulator_impl.h"
 
@@ -64,9 +63,8 @@ void Simulator::Impl::storeContacts(const std::vector<ContactPoint>& points)
     state.velocity = u[0] * point.normal + u[1] * row.tangent_1 + u[2] * row.tangent_2;
     state.cone_margin = row.friction * r[0] - r.tail<2>().norm();
     const auto law = static_cast<Eigen::Index>(contacts.size());  // contacts are the first laws, in this order
-    if (isMotion(result.solution) && law < solver->stepLengths().size())
-      state.residual = naturalMapError(assembly.problem().laws[law], result.solution.u.data() + row.row,
-                                       result.solution.r.data() + row.row, solver->stepLengths()[law]);
+    if (isMotion(result.solution) && law < result.law_errors.size())
+      state.residual = result.law_errors[law];
     state.mode = modeOf(row, r, u, scenario.stopping.tolerance);
     contact_index.emplace_back(state.id, static_cast<int>(contacts.size()));
     contacts.push_back(state);

@@ -254,6 +254,7 @@ bool Simulator::Impl::handleFailure()
   result.solution.u.setZero(assembly.problem().rows());
   result.solution.r.setZero(assembly.problem().rows());
   result.solution.lambda.setZero(assembly.problem().bilaterals());
+  result.law_errors.setZero();  // of standing still
   for (Robot& robot : world.robots)
     robot.v.setZero();
   return true;
