@@ -48,7 +48,8 @@ bool OuterLoop::outOfBudget(const char* exhausted)
 
 double OuterLoop::innerTolerance(double accuracy, bool frictional) const
 {
-  return frictional ? std::clamp(accuracy * last_, 0.1 * context_.tolerance, accuracy) : 0.1 * context_.tolerance;
+  const double least = 0.1 * context_.tolerance;
+  return frictional ? std::max(std::min(accuracy * last_, accuracy), least) : least;
 }
 
 }  // namespace frictional_contact_sim
