@@ -78,7 +78,7 @@ def violation(path, quoted, name):
         if parts[1] not in MODULES:
             return f"no module {parts[1]}"
         return None if parts[1] in closure(module) else f"{module} must not know {parts[1]}"
-    if quoted and len(parts) == 1 and (path.parent / name).is_file():
+    if quoted and (path.parent / name).is_file() and place((path.parent / name).resolve())[0] == module:
         return None
     if first in EVERYWHERE or (not quoted and len(parts) == 1 and "." not in name):
         return None

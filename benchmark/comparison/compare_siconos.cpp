@@ -183,7 +183,7 @@ int main(int argc, char** argv)
   return tools::runTool(app, argc, argv,
                         [&]
                         {
-                          const OneBlasThread one_thread;
+                          useOneBlasThread();
                           run(arguments);
                           return tools::SUCCESS;
                         });

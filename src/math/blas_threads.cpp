@@ -2,36 +2,21 @@
 
 #include <dlfcn.h>
 
+#include <mutex>
+
 namespace frictional_contact_sim
 {
-namespace
+void useOneBlasThread()
 {
-struct OpenBlas
-{
-  int (*threads)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
-  void (*setThreads)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-};
-
-const OpenBlas& openBlas()
-{
-  static const OpenBlas functions;
-  return functions;
-}
-}  // namespace
-
-OneBlasThread::OneBlasThread()
-{
-  const OpenBlas& blas = openBlas();
-  if (blas.threads == nullptr || blas.setThreads == nullptr || blas.threads() <= 1)
-    return;
-  before_ = blas.threads();
-  blas.setThreads(1);
-}
-
-OneBlasThread::~OneBlasThread()
-{
-  if (before_ > 0)
-    openBlas().setThreads(before_);
+  static std::once_flag once;
+  std::call_once(once,
+                 []
+                 {
+                   const auto setThreads =
+                       reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+                   if (setThreads != nullptr)
+                     setThreads(1);
+                 });
 }
 
 }  // namespace frictional_contact_sim

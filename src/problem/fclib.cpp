@@ -11,6 +11,7 @@ extern "C"
 #include <fclib.h>
 }
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -217,10 +218,12 @@ private:
 template <typename Write>
 void writeBeside(const std::string& path, Write write)
 {
-  const H5Silence silence;
+  const H5Session session;
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
     throw std::runtime_error(path + ": is not a regular file, expected a file to write or a new name");
-  const std::string temporary = path + ".part" + std::to_string(getpid());
+  // No two writers, of this process or others, share a name.
+  static std::atomic<unsigned> written{0};
+  const std::string temporary = path + ".part" + std::to_string(getpid()) + "_" + std::to_string(written++);
   if (!std::ofstream(temporary))
     throw std::runtime_error(path + ": cannot be written, expected a writable place");
   std::filesystem::remove(temporary);
@@ -270,7 +273,7 @@ bool writeSolution(const std::string& path, EncodedSolution* solution)
 
 FclibProblem readFclib(const std::string& path)
 {
-  const H5Silence silence;
+  const H5Session session;
   const FclibShape shape = checkFclib(path);
   FclibProblem result;
   result.kind = shape.kind;

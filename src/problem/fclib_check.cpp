@@ -221,15 +221,21 @@ void checkLocal(const Checker& checker, FclibShape& shape)
   }
   checker.checkReals("/fclib_local/vectors/q", shape.rows);
 }
+
+std::mutex& theMutex()
+{
+  static std::mutex mutex;
+  return mutex;
+}
 }  // namespace
 
-H5Silence::H5Silence()
+H5Session::H5Session() : lock_(theMutex())
 {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-H5Silence::~H5Silence()
+H5Session::~H5Session()
 {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }

@@ -5,6 +5,7 @@
  */
 #include <hdf5.h>
 
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,16 +33,20 @@ private:
   herr_t (*close_)(hid_t);
 };
 
-/** @brief Silences HDF5's own printing while it lives. */
-class H5Silence
+/**
+ * @brief HDF5 and libfclib, which threads must not use at once, are this scope's while it lives; HDF5's own printing is
+ * silent.
+ */
+class H5Session
 {
 public:
-  H5Silence();
-  ~H5Silence();
-  H5Silence(const H5Silence&) = delete;
-  H5Silence& operator=(const H5Silence&) = delete;
+  H5Session();
+  ~H5Session();
+  H5Session(const H5Session&) = delete;
+  H5Session& operator=(const H5Session&) = delete;
 
 private:
+  std::lock_guard<std::mutex> lock_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

@@ -56,7 +56,6 @@ struct Simulator::Impl
 
   Solution guess;
   SolverResult result;
-  Eigen::VectorXd law_errors;
   StepOutcome outcome;
   StepSummary report;
   std::vector<int> island_of;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "frictional_contact_sim/model/kinematics.h"
-#include "frictional_contact_sim/problem/law_functions.h"
 #include "simulator_impl.h"
 
 namespace frictional_contact_sim
@@ -104,6 +103,7 @@ void Simulator::Impl::fail(SolverStatus status, const std::string& message)
   result.status = status;
   result.message = message;
   result.residual = 1.0;
+  result.law_errors.setZero(static_cast<Eigen::Index>(assembly.problem().laws.size()));
   result.solution.v.setConstant(assembly.problem().velocities(), std::numeric_limits<double>::quiet_NaN());
   result.solution.u.setZero(assembly.problem().rows());
   result.solution.r.setZero(assembly.problem().rows());
@@ -119,18 +119,6 @@ void Simulator::Impl::solve()
     return;
   }
   solver->solve(assembly.problem(), &guess, result);
-  law_errors.setZero(assembly.problem().laws.size());
-  if (isMotion(result.solution))
-  {
-    int row = 0;
-    for (Eigen::Index law = 0; law < law_errors.size() && law < solver->stepLengths().size(); ++law)
-    {
-      const Law& l = assembly.problem().laws[law];
-      law_errors[law] = naturalMapError(l, result.solution.u.data() + row, result.solution.r.data() + row,
-                                        solver->stepLengths()[law]);
-      row += l.dimension();
-    }
-  }
   if (!isMotion(result.solution))
   {
     result.status = SolverStatus::NUMERICAL_FAILURE;
@@ -155,7 +143,7 @@ void Simulator::Impl::advance()
     body.state.base_pose = basePose(body, context.dt);
     updateEnd(body);
   }
-  assembly.accept(context, {result.solution, law_errors});
+  assembly.accept(context, {result.solution, result.law_errors});
   ++state.clock.steps;
   ++state.scenario_clock.steps;
 }
@@ -170,7 +158,7 @@ bool Simulator::Impl::handleFailure()
   result.solution.u.setZero(assembly.problem().rows());
   result.solution.r.setZero(assembly.problem().rows());
   result.solution.lambda.setZero(assembly.problem().bilaterals());
-  law_errors.setZero(static_cast<Eigen::Index>(assembly.problem().laws.size()));
+  result.law_errors.setZero();  // of standing still
   for (Body& body : bodies)
     body.state.v.setZero();
   return true;

@@ -94,9 +94,9 @@ bool Admm::refactor()
   return factor_.factor(shift_);
 }
 
-void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
+void Admm::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  makeConeProblem(problem, stepLengths(), convex_);
+  makeConeProblem(problem, context.step_lengths, convex_);
   fillMetric(convex_, Metric::BLOCK, metric_);
   inverse_metric_ = metric_.cwiseInverse();
   factor_.setOperator(problem.W);
@@ -105,8 +105,8 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
   projectOntoSets(convex_, y_);
   problem.W.apply(y_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, result, STALL_WINDOW);
-  if (loop.record(residual(problem, u_, y_), y_))
+  OuterLoop loop(context, result, STALL_WINDOW);
+  if (loop.record(context.residual(problem, u_, y_), y_))
     return;
   // The multiplier of the start is u~ of the guess, zero for a cold one.
   lambda_ = u_;
@@ -117,7 +117,7 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
   x_ = -metric_.cwiseProduct(lambda_) / penalty_;
   remember();
   bool factored = refactor();
-  for (int k = 1; k <= stopping().max_iterations; ++k)
+  for (int k = 1; k <= context.max_iterations; ++k)
   {
     if (!factored || !y_.allFinite())
     {
@@ -138,9 +138,9 @@ void Admm::doSolve(const DelassusProblem& problem, SolverResult& result)
     lambda_ = -penalty_ * inverse_metric_.cwiseProduct(x_);
     problem.W.apply(y_, u_);
     u_ += problem.q;
-    if (loop.record(residual(problem, u_, y_), y_))
+    if (loop.record(context.residual(problem, u_, y_), y_))
       return;
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "iterations exhausted"))
+    if (loop.outOfBudget("iterations exhausted"))
       return;
     if (k % options_.update_interval != 0)
       continue;

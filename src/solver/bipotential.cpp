@@ -117,7 +117,7 @@ bool Bipotential::balance()
   return factor();
 }
 
-void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
+void Bipotential::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   if (problem.W.rows() > options_.max_rows)
   {
@@ -125,7 +125,7 @@ void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
     result.message = std::to_string(problem.W.rows()) + " rows are too many for the dense factor of bipotential";
     return;
   }
-  scaled_.set(problem, stepLengths(), ScaledContacts::Metric::DIRECTION);
+  scaled_.set(problem, context.step_lengths, ScaledContacts::Metric::DIRECTION);
   scaled_.scaleImpulse(result.solution.r, z_);
   scaled_.velocity(z_, c_);
   matrix_ = scaled_.root().asDiagonal() * problem.W.toDense() * scaled_.root().asDiagonal();
@@ -142,13 +142,13 @@ void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
   alpha_ = -c_ / sigma_;
   beta_ = -z_ / sigma_;
   bool regular = factor();
-  OuterLoop loop(stopping().tolerance, result);
+  OuterLoop loop(context, result);
   for (result.iterations = 0;; ++result.iterations)
   {
     scaled_.unscaleImpulse(x_, r_);
     problem.W.apply(r_, u_);
     u_ += problem.q;
-    const double value = residual(problem, u_, r_);
+    const double value = context.residual(problem, u_, r_);
     if (loop.record(value, r_))
       return;
     if (!regular || !std::isfinite(value))
@@ -157,7 +157,7 @@ void Bipotential::doSolve(const DelassusProblem& problem, SolverResult& result)
       result.message = regular ? "the iterates diverged" : "the matrix of the quadratic step is not positive definite";
       return;
     }
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "splitting iterations exhausted"))
+    if (loop.outOfBudget("splitting iterations exhausted"))
       return;
     sweep();
     if ((result.iterations + 1) % options_.balance_interval == 0)

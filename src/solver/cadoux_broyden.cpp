@@ -60,25 +60,25 @@ void CadouxBroyden::update(const Eigen::VectorXd& ds, const Eigen::VectorXd& dG)
   right_.push_back(std::move(right));
 }
 
-void CadouxBroyden::doSolve(const DelassusProblem& problem, SolverResult& result)
+void CadouxBroyden::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   left_.clear();
   right_.clear();
-  map_.setProblem(problem, stepLengths());
+  map_.setProblem(problem, context.step_lengths);
   map_.setGuess(result.solution.r);
   Eigen::VectorXd s = map_.value();
-  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
-  if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+  OuterLoop loop(context, result, options_.stall_window);
+  if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [this] { return timeIsUp(); };
+  budget.interrupted = [&context] { return context.timeIsUp(); };
   Eigen::VectorXd old_s, old_G, best_F;
   double best = std::numeric_limits<double>::infinity();
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
+  while (!loop.outOfBudget("outer iterations exhausted"))
   {
     map_.evaluate(s, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     ++result.iterations;
-    if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+    if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
       return;
     const Eigen::VectorXd G = map_.value() - s;
     if (!std::isfinite(G.norm()) && best_F.size() == 0)

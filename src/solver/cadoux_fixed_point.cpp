@@ -31,21 +31,21 @@ CadouxFixedPoint::CadouxFixedPoint(const CadouxOptions& options, std::unique_ptr
   options_.validate();
 }
 
-void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+void CadouxFixedPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  map_.setProblem(problem, stepLengths());
+  map_.setProblem(problem, context.step_lengths);
   map_.setGuess(result.solution.r);
   s_ = map_.value();
   if (options_.initial_slip == InitialSlip::ZERO)
     s_.setZero();
-  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
-  const double first_residual = residual(problem, map_.u(), map_.r());
+  OuterLoop loop(context, result, options_.stall_window);
+  const double first_residual = context.residual(problem, map_.u(), map_.r());
   if (loop.record(first_residual, map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [this] { return timeIsUp(); };
+  budget.interrupted = [&context] { return context.timeIsUp(); };
   bool raised = false;
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
+  while (!loop.outOfBudget("outer iterations exhausted"))
   {
     const ConvexResult inner = map_.evaluate(s_, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     ++result.iterations;
@@ -57,7 +57,7 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, SolverResult& res
       map_.setGuess(Eigen::VectorXd::Zero(problem.W.rows()));
       continue;
     }
-    if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+    if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
       return;
     // A cycle of F is broken by averaging: half the step after each cycle_window iterations without progress.
     const int halvings = std::min(loop.sinceProgress() / options_.cycle_window, MAX_HALVINGS);

@@ -150,9 +150,9 @@ CadouxNewton::CadouxNewton(const CadouxNewtonOptions& options, std::unique_ptr<C
   options_.validate();
 }
 
-void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
+void CadouxNewton::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
+  OuterLoop loop(context, result, options_.stall_window);
   if (problem.W.rows() > options_.max_rows)
   {
     loop.stop(SolverStatus::NUMERICAL_FAILURE, "");
@@ -160,23 +160,23 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
                      std::to_string(options_.max_rows);
     return;
   }
-  map_.setProblem(problem, stepLengths());
+  map_.setProblem(problem, context.step_lengths);
   map_.setGuess(result.solution.r);
   s_ = map_.value();
-  if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+  if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [this] { return timeIsUp(); };
+  budget.interrupted = [&context] { return context.timeIsUp(); };
   const auto evaluate = [&](const Eigen::VectorXd& point)
   {
     map_.evaluate(point, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
     return 0.5 * (map_.value() - point).squaredNorm();
   };
   double merit = evaluate(s_);
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Newton iterations exhausted"))
+  while (!loop.outOfBudget("Newton iterations exhausted"))
   {
     ++result.iterations;
-    if (loop.record(residual(problem, map_.u(), map_.r()), map_.r()))
+    if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
       return;
     const bool regular = newton_.compute(problem, map_, s_, options_.proximal, step_);
     fixed_point_ = map_.value();

@@ -141,9 +141,9 @@ void FbBfgs::remember()
   pairs_ = std::min(pairs_ + 1, options_.memory);
 }
 
-void FbBfgs::doSolve(const DelassusProblem& problem, SolverResult& result)
+void FbBfgs::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, stepLengths());
+  system_.set(problem, context.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   moves_.resize(system_.rows(), options_.memory);
@@ -155,14 +155,14 @@ void FbBfgs::doSolve(const DelassusProblem& problem, SolverResult& result)
   Point current;
   current.merit = system_.evaluate(c_, z_, 0.0, true);
   system_.gradient(gradient_);
-  OuterLoop loop(stopping().tolerance, result);
+  OuterLoop loop(context, result);
   for (result.iterations = 0;; ++result.iterations)
   {
     contacts.unscaleImpulse(z_, r_);
     contacts.unscaleVelocity(c_, u_);
-    if (loop.record(residual(problem, u_, r_), r_))
+    if (loop.record(context.residual(problem, u_, r_), r_))
       return;
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "quasi-Newton iterations exhausted"))
+    if (loop.outOfBudget("quasi-Newton iterations exhausted"))
       return;
     bool moved = false;
     for (int attempt = 0; attempt < 2 && !moved; ++attempt)

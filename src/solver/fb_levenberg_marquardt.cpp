@@ -58,15 +58,15 @@ bool FbLevenbergMarquardt::tryStep(double lambda, double& merit, double& gain)
   return true;
 }
 
-void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, SolverResult& result)
+void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, stepLengths());
+  system_.set(problem, context.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   contacts.velocity(z_, c_);
   const double scale = std::max(contacts.freeVelocity().norm(), std::numeric_limits<double>::min());
   double damping = options_.first_damping, increase = 2.0;
-  OuterLoop loop(stopping().tolerance, result);
+  OuterLoop loop(context, result);
   bool moved = true;
   double merit = 0.0;
   for (result.iterations = 0;; ++result.iterations)
@@ -75,12 +75,12 @@ void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, SolverResult&
     {
       contacts.unscaleImpulse(z_, r_);
       contacts.unscaleVelocity(c_, u_);
-      if (loop.record(residual(problem, u_, r_), r_))
+      if (loop.record(context.residual(problem, u_, r_), r_))
         return;
       merit = system_.evaluate(c_, z_, 0.0, true);
       steps_.assemble(system_);
     }
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Levenberg-Marquardt iterations exhausted"))
+    if (loop.outOfBudget("Levenberg-Marquardt iterations exhausted"))
       return;
     if (damping > LARGEST_DAMPING || !std::isfinite(merit))
     {

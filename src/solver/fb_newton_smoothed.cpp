@@ -112,15 +112,15 @@ bool FbNewtonSmoothed::nextSmoothing(double largest, double root_rows, double& m
   return true;
 }
 
-void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& result)
+void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, stepLengths());
+  system_.set(problem, context.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   start_ = z_;
   const double largest = options_.first_smoothing * contacts.freeVelocity().lpNorm<Eigen::Infinity>();
   const double root_rows = std::sqrt(static_cast<double>(system_.rows()));
-  OuterLoop loop(stopping().tolerance, result);
+  OuterLoop loop(context, result);
   alpha_ = largest;
   inner_ = restarts_ = 0;
   stuck_ = false;
@@ -129,9 +129,9 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, SolverResult& res
     contacts.velocity(z_, c_);
     contacts.unscaleImpulse(z_, r_);
     contacts.unscaleVelocity(c_, u_);
-    if (loop.record(residual(problem, u_, r_), r_))
+    if (loop.record(context.residual(problem, u_, r_), r_))
       return;
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "Newton iterations exhausted"))
+    if (loop.outOfBudget("Newton iterations exhausted"))
       return;
     double merit = system_.evaluate(c_, z_, alpha_, true);
     if (!nextSmoothing(largest, root_rows, merit) || !std::isfinite(merit))

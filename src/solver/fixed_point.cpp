@@ -36,12 +36,13 @@ void FixedPoint::setOptions(const FixedPointOptions& options)
   options_ = options;
 }
 
-double FixedPoint::evaluate(const DelassusProblem& problem, const Eigen::VectorXd& z, Eigen::VectorXd& field)
+double FixedPoint::evaluate(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& z,
+                            Eigen::VectorXd& field)
 {
   scaled_.velocity(z, field);
   scaled_.unscaleImpulse(z, r_);
   scaled_.unscaleVelocity(field, u_);
-  const double value = residual(problem, u_, r_);
+  const double value = context.residual(problem, u_, r_);
   for (int i = 0; i < problem.W.blocks(); ++i)
     map_.field(scaled_.laws()[static_cast<std::size_t>(i)], &field[scaled_.offset(i)]);
   return value;
@@ -57,19 +58,19 @@ void FixedPoint::advance(double theta)
   }
 }
 
-void FixedPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+void FixedPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  scaled_.set(problem, stepLengths(), metric_);
+  scaled_.set(problem, context.step_lengths, metric_);
   scaled_.scaleImpulse(result.solution.r, z_);
   double theta = options_.first_step;
-  OuterLoop loop(stopping().tolerance, result);
-  if (loop.record(evaluate(problem, z_, field_), result.solution.r))
+  OuterLoop loop(context, result);
+  if (loop.record(evaluate(problem, context, z_, field_), result.solution.r))
     return;
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "fixed-point iterations exhausted"))
+  while (!loop.outOfBudget("fixed-point iterations exhausted"))
   {
     advance(theta);
     ++result.iterations;
-    const double value = evaluate(problem, trial_, trial_field_);
+    const double value = evaluate(problem, context, trial_, trial_field_);
     if (!std::isfinite(value))
     {
       loop.stop(SolverStatus::NUMERICAL_FAILURE, "the fixed-point iterations diverged");

@@ -85,14 +85,14 @@ double GaussSeidel::sweep(const DelassusProblem& problem, Eigen::VectorXd& r) co
 }
 
 /** The step of conjugate sweeps between two of them, from the change r - previous_ of the last one. */
-void GaussSeidel::extrapolate(const DelassusProblem& problem, Eigen::VectorXd& r)
+void GaussSeidel::extrapolate(const DelassusProblem& problem, const SolveContext& context, Eigen::VectorXd& r)
 {
   double square = 0.0;
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int row = problem.W.offset(i);
     const int d = problem.W.dimension(i);
-    square += (r.segment(row, d) - previous_.segment(row, d)).squaredNorm() / stepLengths()[i];
+    square += (r.segment(row, d) - previous_.segment(row, d)).squaredNorm() / context.step_lengths[i];
   }
   const double beta = previous_square_ > 0.0 ? square / previous_square_ : 0.0;
   previous_square_ = square;
@@ -103,31 +103,32 @@ void GaussSeidel::extrapolate(const DelassusProblem& problem, Eigen::VectorXd& r
   direction_ += velocity_;
 }
 
-void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
+void GaussSeidel::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   Eigen::VectorXd& r = result.solution.r;
-  const double tolerance = stopping().tolerance;
+  const double tolerance = context.tolerance;
   double window_start = std::numeric_limits<double>::infinity();
   int window_end = options_.stall_window;
   previous_square_ = 0.0;
   direction_.setZero(r.size());
   for (int k = 0;; ++k)
   {
-    const bool last = k >= stopping().max_iterations;
+    const bool last = k >= context.max_iterations;
     if (options_.conjugate && !last)
     {
       if (k > 0)
-        extrapolate(problem, r);
+        extrapolate(problem, context, r);
       previous_ = r;
     }
     const double change = last ? 0.0 : sweep(problem, r);
     result.iterations = last ? k : k + 1;
     const bool check = last || change <= LIKELY * tolerance || (k + 1) % options_.check_interval == 0;
-    if (!check && !(problem.W.rows() > LONG_SWEEP_ROWS && timeIsUp()))
+    if (!check && !(problem.W.rows() > LONG_SWEEP_ROWS && context.timeIsUp()))
       continue;
     problem.W.apply(r, velocity_);
     velocity_ += problem.q;
-    const double value = residual(problem, velocity_, r);
+    const double value = context.residual(problem, velocity_, r);
+    context.note(result.iterations, value);
     result.residual = value;
     if (value <= tolerance)
     {
@@ -152,7 +153,7 @@ void GaussSeidel::doSolve(const DelassusProblem& problem, SolverResult& result)
       window_start = value;
       window_end = k + 1 + options_.stall_window;
     }
-    if (timeIsUp())
+    if (context.timeIsUp())
     {
       result.status = SolverStatus::TIME_LIMIT;
       result.message = "time limit reached";

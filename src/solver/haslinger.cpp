@@ -38,31 +38,31 @@ void Haslinger::updateThresholds(const DelassusProblem& problem, double relaxati
   }
 }
 
-void Haslinger::doSolve(const DelassusProblem& problem, SolverResult& result)
+void Haslinger::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   const bool frictional = std::any_of(problem.laws.begin(), problem.laws.end(),
                                       [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
   r_ = result.solution.r;
   thresholds_.setZero(problem.W.blocks());
-  makeCylinderProblem(problem, stepLengths(), thresholds_, convex_);
+  makeCylinderProblem(problem, context.step_lengths, thresholds_, convex_);
   updateThresholds(problem, 1.0);
   projectOntoSets(convex_, r_);
   problem.W.apply(r_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
-  double value = residual(problem, u_, r_);
+  OuterLoop loop(context, result, options_.stall_window);
+  double value = context.residual(problem, u_, r_);
   if (loop.record(value, r_))
     return;
   ConvexBudget budget;
-  budget.interrupted = [this] { return timeIsUp(); };
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "outer iterations exhausted"))
+  budget.interrupted = [&context] { return context.timeIsUp(); };
+  while (!loop.outOfBudget("outer iterations exhausted"))
   {
     budget.tolerance = loop.innerTolerance(options_.inner_accuracy, frictional) *
-                       velocityScale(problem.q, u_, r_, stepLengths(), problem.W);
+                       velocityScale(problem.q, u_, r_, context.step_lengths, problem.W);
     inner_->solve(convex_, budget, r_, u_);
     ++result.iterations;
     const double before = value;
-    value = residual(problem, u_, r_);
+    value = context.residual(problem, u_, r_);
     if (loop.record(value, r_))
       return;
     if (value > options_.slowest * before)

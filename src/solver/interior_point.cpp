@@ -43,29 +43,29 @@ void InteriorPoint::updateSlip(const DelassusProblem& problem)
   }
 }
 
-bool InteriorPoint::run(const DelassusProblem& problem, double shift, double slip_centring, OuterLoop& loop,
-                        SolverResult& result)
+bool InteriorPoint::run(const DelassusProblem& problem, const SolveContext& context, double shift, double slip_centring,
+                        OuterLoop& loop, SolverResult& result)
 {
-  const double mean_step = std::exp(stepLengths().array().log().mean());
+  const double mean_step = std::exp(context.step_lengths.array().log().mean());
   problem.W.apply(guess_, u_);
   u_ += problem.q;
   updateSlip(problem);
   u_ += convex_.c - problem.q;
   iteration_.start(convex_, guess_, u_, shift);
   double centring = 0.0;
-  while (!loop.outOfBudget(stopping().max_iterations, timeIsUp(), "iterations exhausted"))
+  while (!loop.outOfBudget("iterations exhausted"))
   {
     const double length = iteration_.step(convex_, centring);
     if (length < SHORTEST_STEP)
       return loop.stop(SolverStatus::STAGNATED, "the step length fell to zero");
     ++result.iterations;
     u_ = iteration_.u() - convex_.c + problem.q;
-    const double value = residual(problem, u_, iteration_.r());
+    const double value = context.residual(problem, u_, iteration_.r());
     if (loop.record(value, iteration_.r()))
       return true;
     if (frictional_)
     {
-      const double error = value * velocityScale(problem.q, u_, iteration_.r(), stepLengths(), problem.W);
+      const double error = value * velocityScale(problem.q, u_, iteration_.r(), context.step_lengths, problem.W);
       centring = slip_centring * mean_step * error * error;
     }
     updateSlip(problem);
@@ -73,27 +73,27 @@ bool InteriorPoint::run(const DelassusProblem& problem, double shift, double sli
   return true;
 }
 
-void InteriorPoint::doSolve(const DelassusProblem& problem, SolverResult& result)
+void InteriorPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  makeConeProblem(problem, stepLengths(), convex_);
+  makeConeProblem(problem, context.step_lengths, convex_);
   frictional_ = std::any_of(problem.laws.begin(), problem.laws.end(),
                             [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
   guess_ = result.solution.r;
   projectOntoSets(convex_, guess_);
   problem.W.apply(guess_, u_);
   u_ += problem.q;
-  OuterLoop loop(stopping().tolerance, result, options_.stall_window);
-  const double first = residual(problem, u_, guess_);
+  OuterLoop loop(context, result, options_.stall_window);
+  const double first = context.residual(problem, u_, guess_);
   if (loop.record(first, guess_))
     return;
   double shift = std::numeric_limits<double>::infinity();
   if (options_.warm_shift > 0.0 && !guess_.isZero(0.0))
-    shift = options_.warm_shift * first * velocityScale(problem.q, u_, guess_, stepLengths(), problem.W);
+    shift = options_.warm_shift * first * velocityScale(problem.q, u_, guess_, context.step_lengths, problem.W);
   double slip_centring = options_.slip_centring;
   for (int attempt = 0; attempt <= options_.restarts; ++attempt)
   {
     loop.restart();
-    run(problem, shift, slip_centring, loop, result);
+    run(problem, context, shift, slip_centring, loop, result);
     if (result.status != SolverStatus::STAGNATED)
       return;
     shift = std::numeric_limits<double>::infinity();

@@ -36,12 +36,14 @@ struct IslandWorkspace
 
   /** @brief The slot of this shape, or one to be used for it. */
   IslandSlot& slot(int rows, std::size_t blocks);
-  /** @brief Copies the island's laws, q, r and step lengths to its slot. */
-  IslandSlot& gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& r);
+  /** @brief Copies the island's laws, q, step lengths and r to its slot; those given are of the whole. */
+  IslandSlot& gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& step_lengths,
+                     const Eigen::VectorXd& r);
   /** @brief Largest |q| of the island, at least a small share of the whole's [m/s]. */
   double scale(const DelassusProblem& whole, double whole_free_velocity) const;
   /** @brief Whether the guess is good enough for the island, from the errors and impulses of its laws alone. */
-  bool alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& r, double error, double impulse) const;
+  bool alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,
+                     double error, double impulse) const;
   /** @brief Writes the slot's impulses to r. */
   void scatter(const DelassusProblem& whole, const IslandSlot& slot, Eigen::VectorXd& r) const;
 
@@ -52,7 +54,6 @@ struct IslandWorkspace
   long clock = 0;
   Eigen::VectorXd velocity;  ///< u of the guess
   Eigen::VectorXd errors;  ///< of the laws at the guess [m/s]
-  Eigen::VectorXd step_lengths;  ///< of the whole
 };
 
 }  // namespace frictional_contact_sim

@@ -212,7 +212,7 @@ bool LcpLemke::align(const DelassusProblem& problem, const Eigen::VectorXd& r, d
   return changed;
 }
 
-void LcpLemke::doSolve(const DelassusProblem& problem, SolverResult& result)
+void LcpLemke::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   int size = 0;
   bool spatial = false;
@@ -229,13 +229,13 @@ void LcpLemke::doSolve(const DelassusProblem& problem, SolverResult& result)
     return;
   }
   angles_.setZero(problem.W.blocks());
-  const Eigen::VectorXd scale = stepLengths().cwiseSqrt();
+  const Eigen::VectorXd scale = context.step_lengths.cwiseSqrt();
   LcpOptions pivoting = options_.pivoting;
-  pivoting.interrupted = [this] { return timeIsUp(); };
-  OuterLoop loop(stopping().tolerance, result, options_.alignments + 2);
+  pivoting.interrupted = [&context] { return context.timeIsUp(); };
+  OuterLoop loop(context, result, options_.alignments + 2);
   for (int k = 0; k <= (spatial ? options_.alignments : 0); ++k)
   {
-    if (loop.outOfBudget(stopping().max_iterations, timeIsUp(), "solves of the LCP exhausted"))
+    if (loop.outOfBudget("solves of the LCP exhausted"))
       return;
     const ContactLcp lcp = makeContactLcp(problem, options_.facets, angles_, scale);
     const LcpResult answer = options_.method == LcpMethod::LEMKE ? solveLemke(lcp.A, lcp.b, pivoting)
@@ -244,9 +244,9 @@ void LcpLemke::doSolve(const DelassusProblem& problem, SolverResult& result)
     r_ = lcp.R * answer.x + lcp.r0;
     problem.W.apply(r_, u_);
     u_ += problem.q;
-    if (loop.record(residual(problem, u_, r_), r_))
+    if (loop.record(context.residual(problem, u_, r_), r_))
       return;
-    if (answer.status == LcpStatus::INTERRUPTED || timeIsUp())
+    if (answer.status == LcpStatus::INTERRUPTED || context.timeIsUp())
     {
       loop.stop(SolverStatus::TIME_LIMIT, "time limit reached");
       return;

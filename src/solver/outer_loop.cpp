@@ -13,13 +13,14 @@ bool OuterLoop::stop(SolverStatus status, const char* message)
 
 bool OuterLoop::record(double residual, const Eigen::VectorXd& r)
 {
+  context_.note(result_.iterations, residual);
   last_ = residual;
   if (residual < best_)
   {
     best_ = residual;
     result_.solution.r = r;
   }
-  if (best_ <= tolerance_)
+  if (best_ <= context_.tolerance)
     return stop(SolverStatus::CONVERGED, "");
   run_best_ = std::min(run_best_, residual);
   if (run_best_ < 0.9 * window_best_)
@@ -38,16 +39,17 @@ void OuterLoop::restart()
   since_ = 0;
 }
 
-bool OuterLoop::outOfBudget(int max_iterations, bool time_is_up, const char* exhausted)
+bool OuterLoop::outOfBudget(const char* exhausted)
 {
-  if (time_is_up)
+  if (context_.timeIsUp())
     return stop(SolverStatus::TIME_LIMIT, "time limit reached");
-  return result_.iterations >= max_iterations && stop(SolverStatus::MAX_ITERATIONS, exhausted);
+  return result_.iterations >= context_.max_iterations && stop(SolverStatus::MAX_ITERATIONS, exhausted);
 }
 
 double OuterLoop::innerTolerance(double accuracy, bool frictional) const
 {
-  return frictional ? std::clamp(accuracy * last_, 0.1 * tolerance_, accuracy) : 0.1 * tolerance_;
+  const double least = 0.1 * context_.tolerance;
+  return frictional ? std::max(std::min(accuracy * last_, accuracy), least) : least;
 }
 
 }  // namespace frictional_contact_sim

@@ -117,23 +117,28 @@ std::unique_ptr<Solver> Portfolio::sibling() const
   return std::make_unique<Portfolio>(options_);
 }
 
-double Portfolio::criterion(const DelassusProblem& problem, const Eigen::VectorXd& r)
+double Portfolio::criterion(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& r)
 {
   relativeVelocity(problem, r, velocity_);
-  return residual(problem, velocity_, r);
+  return context.residual(problem, velocity_, r);
 }
 
-bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin)
+bool Portfolio::run(Solver& method, const DelassusProblem& problem, const SolveContext& context, int budget,
+                    SolverResult& result, double margin)
 {
-  budget = std::min(budget, stopping().max_iterations - used_);
+  budget = std::min(budget, context.max_iterations - used_);
   if (budget <= 0)
     return false;
   result.tried.push_back(method.name());
   result.iterations = 0;
-  delegate(method, problem, margin * stopping().tolerance, budget, result);
+  SolveContext own = context;
+  own.tolerance *= margin;
+  own.max_iterations = budget;
+  own.iterations_before += used_;
+  delegate(method, problem, own, result);
   used_ += result.iterations;
   result.iterations = used_;
-  const double value = result.residual >= 0.0 ? result.residual : criterion(problem, result.solution.r);
+  const double value = result.residual >= 0.0 ? result.residual : criterion(problem, context, result.solution.r);
   if (value < best_value_)
   {
     best_value_ = value;
@@ -143,7 +148,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, int budget, 
   else
     result.solution.r = best_r_;
   result.residual = UNKNOWN_RESIDUAL;  // result.solution.u is not W r + q of this r
-  return best_value_ <= stopping().tolerance;
+  return best_value_ <= context.tolerance;
 }
 
 /** Every law solved as if it were alone: exact where laws are not coupled. */
@@ -232,63 +237,65 @@ bool Portfolio::start(int attempt, const DelassusProblem& problem, Eigen::Vector
 }
 
 /** Newton from the start, and in a series of problems a step more than asked for. */
-bool Portfolio::tryNewton(AcNewton& newton, const DelassusProblem& problem, int steps, SolverResult& result)
+bool Portfolio::tryNewton(AcNewton& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
+                          SolverResult& result)
 {
-  const bool done = run(newton, problem, steps, result);
-  if (done && !coldStart() && best_value_ > SERIES_MARGIN * stopping().tolerance)
-    run(newton, problem, 1, result, SERIES_MARGIN);
+  const bool done = run(newton, problem, context, steps, result);
+  if (done && !context.cold_start && best_value_ > SERIES_MARGIN * context.tolerance)
+    run(newton, problem, context, 1, result, SERIES_MARGIN);
   return done;
 }
 
 /** Haslinger's fixed point, given up when it is slow: then the others start as if it had not been. */
-bool Portfolio::tryHaslinger(const DelassusProblem& problem, SolverResult& result)
+bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   const double value = best_value_;
   first_r_ = result.solution.r;
-  const bool done = run(*haslinger_, problem, options_.haslinger_steps, result);
+  const bool done = run(*haslinger_, problem, context, options_.haslinger_steps, result);
   if (best_value_ > WORTH_KEEPING * value)
     result.solution.r = first_r_;
   return done;
 }
 
-void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
+void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   used_ = 0;
   best_r_ = result.solution.r;
   if (!(result.residual >= 0.0))
   {
-    result.residual = criterion(problem, best_r_);
+    result.residual = criterion(problem, context, best_r_);
     result.solution.u = velocity_;
   }
   best_value_ = result.residual;
-  bool done = best_value_ <= stopping().tolerance;
+  bool done = best_value_ <= context.tolerance;
   const bool newton_first = problem.W.rows() <= options_.newton_first_rows;
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
   const bool swept = !newton_first && problem.W.rows() <= options_.swept_last_rows;
   if (newton_first)
-    done = done || tryNewton(*first_newton_, problem, options_.newton_first_steps, result);
+    done = done || tryNewton(*first_newton_, problem, context, options_.newton_first_steps, result);
   else if (problem.W.rows() <= options_.newton_try_rows)
-    done = done || tryNewton(*newton_trial_, problem, options_.newton_try_steps, result);
+    done = done || tryNewton(*newton_trial_, problem, context, options_.newton_try_steps, result);
   if (!newton_first)
   {
-    done = done || tryHaslinger(problem, result);
-    done = done || run(*gauss_seidel_, problem, options_.first_sweeps, result);
+    done = done || tryHaslinger(problem, context, result);
+    done = done || run(*gauss_seidel_, problem, context, options_.first_sweeps, result);
     if (swept && problem.W.rows() >= options_.swept_first_rows)
-      done = done || run(*swept_newton_, problem, options_.swept_steps, result);
+      done = done || run(*swept_newton_, problem, context, options_.swept_steps, result);
     if (newton)
-      done = done || run(*newton_, problem, options_.newton_steps, result);
+      done = done || run(*newton_, problem, context, options_.newton_steps, result);
   }
-  for (int round = 0; !done && round < options_.max_rounds && used_ < stopping().max_iterations && !timeIsUp(); ++round)
+  for (int round = 0; !done && round < options_.max_rounds && used_ < context.max_iterations && !context.timeIsUp();
+       ++round)
   {
-    done = run(*gauss_seidel_, problem, options_.later_sweeps << round, result);
+    done = run(*gauss_seidel_, problem, context, options_.later_sweeps << round, result);
     if (newton)
-      done = done || run(*newton_, problem, options_.newton_steps << round, result);
+      done = done || run(*newton_, problem, context, options_.newton_steps << round, result);
     if (swept && !newton)
-      done = done || run(*swept_newton_, problem, options_.swept_steps << round, result);
+      done = done || run(*swept_newton_, problem, context, options_.swept_steps << round, result);
     for (std::unique_ptr<Solver>& method : newton ? last_resort_ : without_factors_)
-      done = done || run(*method, problem, options_.newton_steps << round, result);
+      done = done || run(*method, problem, context, options_.newton_steps << round, result);
     if (swept && newton)
-      done = done || run(*swept_newton_, problem, options_.swept_steps << round, result);
+      done = done || run(*swept_newton_, problem, context, options_.swept_steps << round, result);
   }
   result.solution.r = best_r_;
   if (done)
@@ -296,9 +303,9 @@ void Portfolio::doSolve(const DelassusProblem& problem, SolverResult& result)
     result.status = SolverStatus::CONVERGED;
     return;
   }
-  result.status = timeIsUp()                           ? SolverStatus::TIME_LIMIT
-                  : used_ >= stopping().max_iterations ? SolverStatus::MAX_ITERATIONS
-                                                       : SolverStatus::STAGNATED;
+  result.status = context.timeIsUp()                ? SolverStatus::TIME_LIMIT
+                  : used_ >= context.max_iterations ? SolverStatus::MAX_ITERATIONS
+                                                    : SolverStatus::STAGNATED;
   result.message = "no method of the portfolio reached the tolerance";
 }
 

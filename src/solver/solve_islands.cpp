@@ -61,6 +61,12 @@ void merge(int first_law, const SolverResult& island, SolverResult& whole)
     whole.message = "island of law " + std::to_string(first_law) + ": " + island.message;
   }
 }
+
+SolveContext islandContext(const SolveContext& whole, const IslandSlot& slot, double scale, double deadline)
+{
+  return {slot.step_lengths, scale,    whole.tolerance, whole.max_iterations,   whole.cold_start,
+          whole.start,       deadline, whole.history,   whole.notedIterations()};
+}
 }  // namespace
 
 void reportNoMemory(const DelassusProblem& problem, SolverResult& result)
@@ -91,7 +97,8 @@ IslandSlot& IslandWorkspace::slot(int rows, std::size_t blocks)
   return slot;
 }
 
-IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& r)
+IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& step_lengths,
+                                    const Eigen::VectorXd& r)
 {
   IslandSlot& slot = this->slot(rows, laws.size());
   DelassusProblem& part = slot.problem;
@@ -132,8 +139,8 @@ double IslandWorkspace::scale(const DelassusProblem& whole, double whole_free_ve
   return largest;
 }
 
-bool IslandWorkspace::alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& r, double error,
-                                    double impulse) const
+bool IslandWorkspace::alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& step_lengths,
+                                    const Eigen::VectorXd& r, double error, double impulse) const
 {
   for (const int i : laws)
   {
@@ -147,17 +154,12 @@ bool IslandWorkspace::alreadySolved(const DelassusProblem& whole, const Eigen::V
   return true;
 }
 
-void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot)
+/** The context is the island's own. */
+void Solver::solveIsland(const DelassusProblem& whole, const SolveContext& context, IslandSlot& slot)
 {
   if (slot.method == nullptr)
     slot.method = sibling();
   Solver& method = slot.method != nullptr ? *slot.method : *this;
-  method.stopping_ = stopping_;
-  method.start_ = start_;
-  method.deadline_ = deadline;
-  method.cold_start_ = cold_start_;
-  method.free_velocity_ = islands_->scale(whole, whole_free_velocity);
-  method.step_lengths_ = slot.step_lengths;
   std::vector<int>& position = islands_->position;
   for (std::size_t i = 0; i < islands_->laws.size(); ++i)
     position[static_cast<std::size_t>(islands_->laws[i])] = static_cast<int>(i);
@@ -167,13 +169,10 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   SolverResult& result = slot.result;
   try
   {
-    if (cold_start_)
-    {
-      // As if the island were alone: the start of the whole may be scaled by what others need.
-      method.solveAtOnce(slot.problem, result);
-      result.residual = method.criterion_;
-    }
-    method.doSolve(slot.problem, result);
+    // As if the island were alone: the start of the whole may be scaled by what others need.
+    if (context.cold_start)
+      result.residual = method.solveAtOnce(slot.problem, context, result).criterion;
+    method.doSolve(slot.problem, context, result);
   }
   catch (const std::bad_alloc&)
   {
@@ -187,18 +186,16 @@ void Solver::solveIsland(const DelassusProblem& whole, double whole_free_velocit
   }
 }
 
-void Solver::solveIslands(const DelassusProblem& problem, SolverResult& result)
+void Solver::solveIslands(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   IslandWorkspace& work = *islands_;
   // What the guess is worth, law by law: an island that is already solved is not even copied, so that a scene at rest
   // with a warm start costs one product.
   problem.W.apply(result.solution.r, work.velocity);
   work.velocity += problem.q;
-  measureLaws(problem.laws, step_lengths_, free_velocity_, work.velocity, result.solution.r, &work.errors);
-  work.step_lengths = step_lengths_;
+  measureLaws(problem.laws, context.step_lengths, context.free_velocity, work.velocity, result.solution.r,
+              &work.errors);
   work.position.assign(problem.laws.size(), -1);
-  const double whole_free_velocity = free_velocity_;
-  const double whole_deadline = deadline_;
   int rows_left = problem.W.rows();
   result.status = SolverStatus::CONVERGED;
   for (int k = 0; k < work.islands.count(); ++k)
@@ -207,21 +204,19 @@ void Solver::solveIslands(const DelassusProblem& problem, SolverResult& result)
     const int rows = work.islands.rows(k);
     const int rows_before = rows_left;
     rows_left -= rows;
-    const double scale = work.scale(problem, whole_free_velocity);
-    if (work.alreadySolved(problem, result.solution.r, stopping_.tolerance * scale, IMPULSE_CAP * scale))
+    const double scale = work.scale(problem, context.free_velocity);
+    if (work.alreadySolved(problem, context.step_lengths, result.solution.r, context.tolerance * scale,
+                           SolveContext::IMPULSE_CAP * scale))
       continue;
-    IslandSlot& slot = work.gather(problem, rows, result.solution.r);
+    IslandSlot& slot = work.gather(problem, rows, context.step_lengths, result.solution.r);
     clear(slot.result);
     // A time limit is shared by rows, what one island leaves goes to the later ones: a hard one does not starve them.
-    const double now = whole_deadline > 0.0 ? secondsSinceStart() : 0.0;
-    const double share = std::max(whole_deadline - now, 0.0) * rows / rows_before;
-    solveIsland(problem, whole_free_velocity, whole_deadline > 0.0 ? now + share : 0.0, slot);
+    const double now = context.deadline > 0.0 ? context.seconds() : 0.0;
+    const double share = std::max(context.deadline - now, 0.0) * rows / rows_before;
+    solveIsland(problem, islandContext(context, slot, scale, context.deadline > 0.0 ? now + share : 0.0), slot);
     work.scatter(problem, slot, result.solution.r);
     merge(work.laws.front(), slot.result, result);
   }
-  step_lengths_ = work.step_lengths;
-  free_velocity_ = whole_free_velocity;
-  deadline_ = whole_deadline;
 }
 
 void Solver::dropSiblings()

@@ -38,14 +38,6 @@ double restingError(const DelassusProblem& problem)
   return worst;
 }
 
-/// Puts a value back when the scope is left, by an exception too.
-struct RestoreOnExit
-{
-  double& place;
-  const double value;
-  ~RestoreOnExit() { place = value; }
-};
-
 void checkGuess(const Solution& guess, int rows)
 {
   if (guess.r.size() != rows)
@@ -64,6 +56,7 @@ void clear(SolverResult& result)
   result.solver.clear();
   result.tried.clear();
   result.message.clear();
+  result.history.clear();
 }
 }  // namespace
 
@@ -111,33 +104,9 @@ void Solver::setStopping(const StoppingOptions& stopping)
   stopping_ = stopping;
 }
 
-double Solver::secondsSinceStart() const
+void Solver::delegate(Solver& method, const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
-bool Solver::timeIsUp() const
-{
-  return deadline_ > 0.0 && secondsSinceStart() > deadline_;
-}
-
-double Solver::residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const
-{
-  return lawResidual(problem.laws, step_lengths_, free_velocity_, u, r, nullptr, 0.0, IMPULSE_CAP);
-}
-
-void Solver::delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
-                      SolverResult& result) const
-{
-  method.stopping_ = stopping_;
-  method.stopping_.tolerance = tolerance;
-  method.stopping_.max_iterations = max_iterations;
-  method.start_ = start_;
-  method.deadline_ = deadline_;
-  method.cold_start_ = cold_start_;
-  method.step_lengths_ = step_lengths_;
-  method.free_velocity_ = free_velocity_;
-  method.doSolve(problem, result);
+  method.doSolve(problem, context, result);
 }
 
 bool Solver::start(int, const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorXd&)
@@ -145,61 +114,73 @@ bool Solver::start(int, const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorX
   return false;
 }
 
-/** E at (u, r) and the stopping criterion there. */
-double Solver::measure(const DelassusProblem& problem, const Solution& solution)
+/** What a solve starts from; the clock runs. */
+SolveContext Solver::begin(SolverResult& result)
 {
-  const LawErrors errors = measureLaws(problem.laws, step_lengths_, free_velocity_, solution.u, solution.r);
-  criterion_ = errors.residual(IMPULSE_CAP);
-  return errors.residual();
+  SolveContext context{step_lengths_};
+  context.start = std::chrono::steady_clock::now();
+  context.deadline = stopping_.time_limit;
+  context.tolerance = stopping_.tolerance;
+  context.max_iterations = stopping_.max_iterations;
+  if (stopping_.record_history)
+    context.history = &result.history;
+  return context;
 }
 
-/** Cold starts that already solve the problem. @return E there; larger than the tolerance when they do not. */
-double Solver::solveAtOnce(const DelassusProblem& problem, SolverResult& result)
+Solver::Verdict Solver::measure(const DelassusProblem& problem, const SolveContext& context, const Solution& solution)
+{
+  const LawErrors errors =
+      measureLaws(problem.laws, context.step_lengths, context.free_velocity, solution.u, solution.r);
+  return {errors.residual(), errors.residual(SolveContext::IMPULSE_CAP)};
+}
+
+/** Cold starts that already solve the problem; the verdict on the last one tells whether it does. */
+Solver::Verdict Solver::solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   Solution& solution = result.solution;
   solution.r.setZero(problem.W.rows());
   // Without impulses e_i depends on q alone: a scene where everything parts costs no product with W.
-  criterion_ = restingError(problem) / std::max(free_velocity_, VELOCITY_FLOOR);
-  if (criterion_ <= stopping_.tolerance)
+  const double at_rest = restingError(problem) / std::max(context.free_velocity, VELOCITY_FLOOR);
+  if (at_rest <= context.tolerance)
   {
     solution.u = problem.q;
-    return criterion_;
+    return {at_rest, at_rest};
   }
   if (!start(0, problem, solution.r, solution.u))
     solution.u = problem.q;
-  double value = measure(problem, solution);
-  for (int attempt = 1; !(value <= stopping_.tolerance && criterion_ <= stopping_.tolerance) &&
-                        start(attempt, problem, solution.r, solution.u);
+  Verdict verdict = measure(problem, context, solution);
+  for (int attempt = 1; !verdict.within(context.tolerance) && start(attempt, problem, solution.r, solution.u);
        ++attempt)
-    value = measure(problem, solution);
-  return value;
+    verdict = measure(problem, context, solution);
+  return verdict;
 }
 
-double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
+Solver::Verdict Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context,
+                                   SolverResult& result)
 {
   computeStepLengths(problem, step_lengths_);
-  free_velocity_ = maxAbs(problem.q);
-  deadline_ = stopping_.time_limit;
+  context.free_velocity = maxAbs(problem.q);
+  context.cold_start = guess == nullptr;
+  context.iterations_before = context.notedIterations();
   // Without rows there is nothing to do, guess or not.
   if (guess == nullptr || problem.W.rows() == 0)
   {
-    const double value = solveAtOnce(problem, result);
-    if (value <= stopping_.tolerance && criterion_ <= stopping_.tolerance)
-      return value;
-    result.residual = criterion_;
+    const Verdict verdict = solveAtOnce(problem, context, result);
+    if (verdict.within(context.tolerance))
+      return verdict;
+    result.residual = verdict.criterion;
   }
   else
   {
     result.solution.r = guess->r;
     result.residual = UNKNOWN_RESIDUAL;
   }
-  cold_start_ = guess == nullptr;
   if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
-    solveIslands(problem, result);
+    solveIslands(problem, context, result);
   else
     try
     {
-      doSolve(problem, result);
+      doSolve(problem, context, result);
     }
     catch (const std::bad_alloc&)
     {
@@ -213,7 +194,7 @@ double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess,
   }
   problem.W.apply(result.solution.r, result.solution.u);
   result.solution.u += problem.q;
-  return measure(problem, result.solution);
+  return measure(problem, context, result.solution);
 }
 
 void Solver::checkOperator(bool global) const
@@ -229,19 +210,20 @@ void Solver::checkOperator(bool global) const
         "sparse");
 }
 
-void Solver::judge(double residual, double tolerance, SolverResult& result) const
+void Solver::judge(const Verdict& verdict, SolverResult& result) const
 {
-  result.residual = residual;
+  const double tolerance = stopping_.tolerance;
+  result.residual = verdict.residual;
   if (result.solver.empty())
     result.solver = name_;
   if (result.tried.empty())
     result.tried.push_back(name_);
-  if (residual <= tolerance && criterion_ <= tolerance)
+  if (verdict.within(tolerance))
   {
     result.status = SolverStatus::CONVERGED;
     result.message.clear();
   }
-  else if (residual <= tolerance)
+  else if (verdict.residual <= tolerance)
   {
     if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
       result.status = SolverStatus::STAGNATED;
@@ -252,12 +234,23 @@ void Solver::judge(double residual, double tolerance, SolverResult& result) cons
     result.status = SolverStatus::STAGNATED;
     result.message = "the method reported convergence, the residual does not confirm it";
   }
-  result.seconds = secondsSinceStart();
+}
+
+/** The answer as it is reported, its u given. */
+void Solver::finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict,
+                    SolverResult& result)
+{
+  judge(verdict, result);
+  measureLaws(laws, context.step_lengths, context.free_velocity, result.solution.u, result.solution.r,
+              &result.law_errors);
+  result.seconds = context.seconds();
+  if (context.history != nullptr)
+    result.history.push_back({std::max(result.iterations, context.notedIterations()), result.seconds, result.residual});
 }
 
 void Solver::solve(const DelassusProblem& problem, const Solution* guess, SolverResult& result)
 {
-  start_ = std::chrono::steady_clock::now();
+  SolveContext context = begin(result);
   validate(problem);
   if (guess != nullptr)
     checkGuess(*guess, problem.W.rows());
@@ -274,13 +267,13 @@ void Solver::solve(const DelassusProblem& problem, const Solution* guess, Solver
     converted_.W.assign(problem.W.toSparse(), problem.laws, stopping_.operator_kind);
     used = &converted_;
   }
-  const double value = solveLocal(*used, guess, result);
-  judge(value, stopping_.tolerance, result);
+  const Verdict verdict = solveLocal(*used, guess, context, result);
+  finish(problem.laws, context, verdict, result);
 }
 
 void Solver::solve(const IncrementalProblem& problem, const Solution* guess, SolverResult& result)
 {
-  start_ = std::chrono::steady_clock::now();
+  SolveContext context = begin(result);
   validate(problem);
   if (guess != nullptr)
     checkGuess(*guess, problem.rows());
@@ -293,25 +286,25 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   global_.mass_inverse_force = reduction_->massInverseForce();
 
   const double tolerance = stopping_.tolerance;
-  const RestoreOnExit restore{stopping_.tolerance, tolerance};
-  double local_value = solveLocal(local, guess, result);
+  Verdict verdict = solveLocal(local, guess, context, result);
   reduction_->recover(problem, result.solution);
   GlobalResidual value = globalResidual(problem, global_, result.solution);
   // The global form measures with the unconstrained W_ii and with u from v: ask for a little more when that matters.
-  for (int k = 0; k < REFINEMENTS && local_value <= stopping_.tolerance && value.law > tolerance; ++k)
+  for (int k = 0; k < REFINEMENTS && verdict.residual <= context.tolerance && value.law > tolerance; ++k)
   {
-    stopping_.tolerance *= std::max(0.3 * tolerance / value.law, 0.01);
+    context.tolerance *= std::max(0.3 * tolerance / value.law, 0.01);
     warm_.r = result.solution.r;
     const int iterations = result.iterations;
     result.iterations = 0;
     result.tried.clear();
     result.solver.clear();
-    local_value = solveLocal(local, &warm_, result);
+    verdict = solveLocal(local, &warm_, context, result);
     result.iterations += iterations;
     reduction_->recover(problem, result.solution);
     value = globalResidual(problem, global_, result.solution);
   }
-  judge(value.value(), tolerance, result);
+  verdict.residual = value.value();
+  finish(problem.laws, context, verdict, result);
 }
 
 SolverResult Solver::solve(const DelassusProblem& problem, const Solution* guess)

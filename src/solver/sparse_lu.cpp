@@ -3,6 +3,7 @@
 #include <Eigen/SparseLU>
 #include <Eigen/UmfPackSupport>
 #include <algorithm>
+#include <mutex>
 #include <vector>
 
 #include "frictional_contact_sim/math/blas_threads.h"
@@ -61,6 +62,9 @@ void SparseLu::Workspace::analyseLarge()
   control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   control[UMFPACK_ORDERING] = matrix.cols() > DISSECTION_ROWS ? UMFPACK_ORDERING_METIS : UMFPACK_ORDERING_AMD;
   control[UMFPACK_IRSTEP] = 0.0;
+  // METIS draws from the process's one rand(), seeded at its start: two at once would not order as one does.
+  static std::mutex ordering;
+  const std::lock_guard<std::mutex> lock(ordering);
   multifrontal.analyzePattern(matrix);
 }
 
@@ -81,7 +85,7 @@ bool SparseLu::factor()
   work.analyse();
   if (work.isLarge())
   {
-    const OneBlasThread one_thread;
+    useOneBlasThread();
     work.multifrontal.factorize(work.matrix);
     return work.multifrontal.info() == Eigen::Success;
   }

@@ -56,13 +56,16 @@ std::unique_ptr<Solver> SweptNewton::sibling() const
 }
 
 /** Sweeps from r + step_. @return E where they end, swept_.solution.r */
-double SweptNewton::sweptStep(const DelassusProblem& problem, const Eigen::VectorXd& r)
+double SweptNewton::sweptStep(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& r)
 {
   swept_.solution.r = r + step_;
   for (int i = 0; i < problem.W.blocks(); ++i)
     projectImpulse(problem.laws[static_cast<std::size_t>(i)], &swept_.solution.r[problem.W.offset(i)]);
   swept_.residual = UNKNOWN_RESIDUAL;
-  delegate(gauss_seidel_, problem, stopping().tolerance, static_cast<int>(sweeps_), swept_);
+  SolveContext sweeps = context;
+  sweeps.max_iterations = static_cast<int>(sweeps_);
+  sweeps.history = nullptr;  // sweeps are no iterations of this method
+  delegate(gauss_seidel_, problem, sweeps, swept_);
   return swept_.residual;
 }
 
@@ -82,28 +85,30 @@ void SweptNewton::adapt(bool sufficient)
   restart_ = std::max(RESTART_DECREASE * restart_, ALPHA_MIN);
 }
 
-void SweptNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
+void SweptNewton::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  prepare(problem);
-  rho_normal_ = rho_tangential_ = stepLengths();
+  prepare(problem, context);
+  rho_normal_ = rho_tangential_ = context.step_lengths;
   Eigen::VectorXd& r = result.solution.r;
   problem.W.apply(r, u_);
   u_ += problem.q;
-  double value = residual(problem, u_, r);
+  double value = context.residual(problem, u_, r);
+  context.note(0, value);
   double best = value;
   best_r_ = r;
   alpha_ = options_.proximal_start;
   restart_ = options_.proximal_restart;
   sweeps_ = first_sweeps_ = std::clamp(problem.W.blocks() / LAWS_A_SWEEP, options_.sweeps, options_.many_sweeps);
-  while (best > stopping().tolerance && result.iterations < stopping().max_iterations && !timeIsUp())
+  while (best > context.tolerance && result.iterations < context.max_iterations && !context.timeIsUp())
   {
     ++result.iterations;
     evaluate(problem, u_, r, true);
-    const double found = direction(problem) ? sweptStep(problem, r) : std::numeric_limits<double>::infinity();
+    const double found = direction(problem) ? sweptStep(problem, context, r) : std::numeric_limits<double>::infinity();
     adapt(found <= options_.sufficient * value);
     if (!(found <= options_.worst * value))
       continue;
     value = found;
+    context.note(result.iterations, value);
     r.swap(swept_.solution.r);
     problem.W.apply(r, u_);
     u_ += problem.q;
@@ -115,12 +120,12 @@ void SweptNewton::doSolve(const DelassusProblem& problem, SolverResult& result)
   }
   r = best_r_;
   result.residual = best;
-  result.status = best <= stopping().tolerance ? SolverStatus::CONVERGED
-                  : timeIsUp()                 ? SolverStatus::TIME_LIMIT
-                                               : SolverStatus::MAX_ITERATIONS;
-  result.message = best <= stopping().tolerance ? ""
-                   : timeIsUp()                 ? "time limit reached"
-                                                : "Newton iterations exhausted";
+  result.status = best <= context.tolerance ? SolverStatus::CONVERGED
+                  : context.timeIsUp()      ? SolverStatus::TIME_LIMIT
+                                            : SolverStatus::MAX_ITERATIONS;
+  result.message = best <= context.tolerance ? ""
+                   : context.timeIsUp()      ? "time limit reached"
+                                             : "Newton iterations exhausted";
 }
 
 }  // namespace frictional_contact_sim

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "frictional_contact_sim/math/contact_functions.h"
@@ -29,6 +30,7 @@ struct Arguments
   std::vector<std::string> inputs;
   std::vector<std::string> solvers;
   std::string output;
+  std::string history;
   StoppingOptions stopping;
   int repeat = 1;
 };
@@ -126,6 +128,26 @@ std::vector<std::string> listFiles(const std::vector<std::string>& inputs)
   return files;
 }
 
+/** FOLDER/FILE_SOLVER.csv without the file's folder and ending. */
+fs::path historyPath(const std::string& folder, const std::string& file, const std::string& solver)
+{
+  return fs::path(folder) / (fs::path(file).stem().string() + "_" + solver + ".csv");
+}
+
+/** Makes the folder of the histories. Files of one name would write over each other's. */
+void prepareHistory(const std::string& folder, const std::vector<std::string>& files)
+{
+  std::set<std::string> stems;
+  for (const std::string& file : files)
+    if (!stems.insert(fs::path(file).stem().string()).second)
+      throw std::invalid_argument("--history: two files are called " + fs::path(file).filename().string() +
+                                  ", expected different names");
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error("--history " + folder + " is no folder to write to");
+}
+
 /** Solves, writes rows and remembers the worst that happened. */
 class Comparison
 {
@@ -134,8 +156,10 @@ public:
   {
     for (const std::string& name : arguments.solvers)
     {
+      StoppingOptions stopping = arguments.stopping;
+      stopping.record_history = !arguments.history.empty();
       solvers_.push_back(createSolver(name));
-      solvers_.back()->setStopping(arguments.stopping);
+      solvers_.back()->setStopping(stopping);
     }
   }
 
@@ -210,6 +234,16 @@ private:
             << number(median(wall)) << ',' << field(joined(result.tried)) << ',' << field(result.message) << std::endl;
     if (result.status != SolverStatus::CONVERGED)
       exit_code_ = std::max(exit_code_, tools::NOT_CONVERGED);
+    if (!arguments_.history.empty())
+      writeHistory(file, solver.name(), result.history);
+  }
+
+  void writeHistory(const std::string& file, const std::string& solver, const std::vector<HistoryEntry>& history)
+  {
+    std::ofstream output = tools::openOutput(historyPath(arguments_.history, file, solver).string());
+    output << "iteration,seconds,residual,file,solver\n";
+    for (const HistoryEntry& entry : history)
+      output << tools::historyRow(entry) << ',' << field(file) << ',' << solver << '\n';
   }
 
   const Arguments& arguments_;
@@ -236,6 +270,8 @@ int run(Arguments& arguments)
     if (!file)
       throw std::runtime_error("cannot write " + arguments.output);
   }
+  if (!arguments.history.empty())
+    prepareHistory(arguments.history, files);
   std::signal(SIGINT, [](int) { interrupted = 1; });
   return comparison.run(files);
 }
@@ -255,5 +291,8 @@ int main(int argc, char** argv)
       ->delimiter(',');
   tools::addSolveOptions(app, arguments.stopping, arguments.repeat);
   app.add_option("--output", arguments.output, "CSV file (default: standard output)");
+  app.add_option("--history", arguments.history,
+                 "folder for one CSV a solve, FILE_SOLVER.csv: the residual at every iterate the method judged, last\n"
+                 "the answer's: iteration,seconds,residual,file,solver (of the last solve of --repeat)");
   return frictional_contact_sim::tools::runTool(app, argc, argv, [&] { return run(arguments); });
 }

@@ -31,6 +31,7 @@ struct Arguments
   std::string solver = "portfolio";
   std::string operator_name = toString(OperatorKind::AUTOMATIC);
   std::string output;
+  std::string history;
   StoppingOptions stopping;
   int repeat = 1;
   bool json = false;
@@ -166,6 +167,22 @@ void writeAnswer(const Arguments& arguments, const FclibProblem& problem, const 
     writeFclib(arguments.output, problem.global, problem.info, &result.solution);
 }
 
+bool isSameFile(const std::string& a, const std::string& b)
+{
+  return std::filesystem::exists(a) && std::filesystem::exists(b) && std::filesystem::equivalent(a, b);
+}
+
+void writeHistory(const Arguments& arguments, const SolverResult& result, std::ostream& file)
+{
+  if (arguments.history.empty())
+    return;
+  file << "iteration,seconds,residual\n";
+  for (const HistoryEntry& entry : result.history)
+    file << tools::historyRow(entry) << '\n';
+  if (!file.flush())
+    throw std::runtime_error("cannot write " + arguments.history);
+}
+
 int run(const Arguments& arguments)
 {
   if (arguments.list)
@@ -175,18 +192,26 @@ int run(const Arguments& arguments)
   }
   if (arguments.file.empty())
     throw std::invalid_argument("FILE is missing, expected an FCLib file (see --help)");
-  if (!arguments.output.empty() && std::filesystem::exists(arguments.output) &&
-      std::filesystem::exists(arguments.file) && std::filesystem::equivalent(arguments.output, arguments.file))
+  if (isSameFile(arguments.output, arguments.file))
     throw std::invalid_argument("--output " + arguments.output + " is FILE itself, expected another file");
+  if (isSameFile(arguments.history, arguments.file))
+    throw std::invalid_argument("--history " + arguments.history + " is FILE itself, expected another file");
+  if (!arguments.history.empty() && arguments.history == arguments.output)
+    throw std::invalid_argument("--history " + arguments.history + " is --output as well, expected another file");
   const std::unique_ptr<Solver> solver = createSolver(arguments.solver);
   StoppingOptions stopping = arguments.stopping;
   stopping.operator_kind = operatorKind(arguments.operator_name);
+  stopping.record_history = !arguments.history.empty();
   solver->setStopping(stopping);
   const FclibProblem problem = readFclib(arguments.file);
   warnOfAsymmetry(arguments.file, problem);
+  std::ofstream history;
+  if (stopping.record_history)
+    history = tools::openOutput(arguments.history);
   SolverResult result;
   solveRepeatedly(*solver, problem, arguments.repeat, result);
   writeAnswer(arguments, problem, result);
+  writeHistory(arguments, result, history);
   report(arguments, problem, result);
   return result.status == SolverStatus::CONVERGED ? tools::SUCCESS : tools::NOT_CONVERGED;
 }
@@ -206,6 +231,9 @@ int main(int argc, char** argv)
       ->capture_default_str();
   tools::addSolveOptions(app, arguments.stopping, arguments.repeat);
   app.add_option("--output", arguments.output, "write the problem with its solution here");
+  app.add_option("--history", arguments.history,
+                 "write the residual at every iterate the methods judged, last the answer's, to this CSV file:\n"
+                 "iteration,seconds,residual (of the last solve of --repeat)");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
   app.add_flag("--list-solvers", arguments.list, "list the methods and leave");
   return tools::runTool(app, argc, argv, [&] { return run(arguments); });

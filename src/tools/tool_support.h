@@ -7,7 +7,9 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <iostream>
 #include <string>
 
@@ -90,6 +92,23 @@ inline void addSolveOptions(CLI::App& app, StoppingOptions& stopping, int& repea
   app.add_option("--repeat", repeat, "cold solves; times are their medians")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+}
+
+/** @brief Opens a file to write, before work is spent on what it will hold. @throws std::runtime_error in one line */
+inline std::ofstream openOutput(const std::string& path)
+{
+  std::ofstream file(path);
+  if (!file)
+    throw std::runtime_error("cannot write " + path);
+  return file;
+}
+
+/** @brief The columns iteration,seconds,residual of a solve; the residual with all its digits. */
+inline std::string historyRow(const HistoryEntry& entry)
+{
+  char text[80];
+  std::snprintf(text, sizeof(text), "%d,%.9g,%.17g", entry.iteration, entry.seconds, entry.residual);
+  return text;
 }
 
 /** @brief Parses, runs, and turns every exception into one line and BAD_INPUT. run() returns the exit code. */

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "frictional_contact_sim/problem/residual.h"
 #include "frictional_contact_sim/solver/registry.h"
@@ -164,6 +165,32 @@ TEST_F(FclibTest, BrokenFilesAreOneLineErrorsNotTheEndOfTheProcess)
 TEST_F(FclibTest, UnwritablePlacesAreOneLineErrors)
 {
   EXPECT_THROW(writeFclib(file("no/such/folder/a.hdf5"), randomProblem({}, 2), {}), std::runtime_error);
+}
+
+TEST_F(FclibTest, ThreadsWriteAndReadTheirOwnFilesAndOneOfBoth)
+{
+  const IncrementalProblem problems[2] = {randomProblem({}, 1), randomProblem({}, 2)};
+  const std::string shared = file("shared.hdf5");
+  const auto work = [&](int k, bool& well)
+  {
+    const std::string own = file("own" + std::to_string(k) + ".hdf5");
+    for (int round = 0; round < 30; ++round)
+    {
+      writeFclib(own, problems[k], {});
+      writeFclib(shared, problems[k], {});
+      well = well && readFclib(own).global.f == problems[k].f;
+      const Eigen::VectorXd f = readFclib(shared).global.f;
+      well = well && (f == problems[0].f || f == problems[1].f);
+    }
+  };
+  bool well[2] = {true, true};
+  std::thread first(work, 0, std::ref(well[0])), second(work, 1, std::ref(well[1]));
+  first.join();
+  second.join();
+  EXPECT_TRUE(well[0]);
+  EXPECT_TRUE(well[1]);
+  // Nothing is left beside the three files.
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 3);
 }
 
 TEST_F(FclibTest, SharedFilesAreReadAndTheRollingOneRefused)

@@ -15,6 +15,7 @@
 #include "frictional_contact_sim/solver/convex/projected_gradient.h"
 #include "frictional_contact_sim/solver/haslinger.h"
 #include "frictional_contact_sim/solver/interior_point.h"
+#include "frictional_contact_sim/solver/outer_loop.h"
 #include "method_test_support.h"
 #include "support/hand_problems.h"
 #include "support/thesis_problems.h"
@@ -263,6 +264,28 @@ TEST(InteriorPointTest, ReachesTenDigitsOnRedundantContacts)
   solver.setStopping(stopAfter(200, 1e-10));
   const SolverResult result = solver.solve(box);
   EXPECT_EQ(result.status, SolverStatus::CONVERGED) << result.message << " E = " << result.residual;
+}
+
+TEST(OuterLoopsTest, AnInnerProblemIsNeverAskedForMoreThanATenthOfALooseTolerance)
+{
+  const VectorXd step_lengths;
+  SolveContext context{step_lengths};
+  SolverResult result;
+  const OuterLoop loop(context, result);  // whose last residual counts as 1
+  context.tolerance = 1e-8;
+  EXPECT_EQ(loop.innerTolerance(0.01, true), 0.01);
+  EXPECT_EQ(loop.innerTolerance(0.01, false), 0.1 * 1e-8);
+  // A tolerance above ten times the inner accuracy crosses the two bounds.
+  context.tolerance = 0.5;
+  EXPECT_EQ(loop.innerTolerance(0.01, true), 0.1 * 0.5);
+  for (const char* name : {"cadoux_fixed_point", "cadoux_newton", "cadoux_broyden", "haslinger"})
+  {
+    const std::unique_ptr<Solver> solver = createSolver(name);
+    StoppingOptions stopping;
+    stopping.tolerance = 0.5;
+    solver->setStopping(stopping);
+    EXPECT_EQ(solver->solve(randomProblem({}, 3)).status, SolverStatus::CONVERGED) << name;
+  }
 }
 
 TEST(OuterLoopsTest, OptionsAreChecked)

@@ -105,7 +105,7 @@ public:
   Greedy() : Solver("greedy") {}
 
 protected:
-  void doSolve(const DelassusProblem&, SolverResult&) override { throw std::bad_alloc(); }
+  void doSolve(const DelassusProblem&, const SolveContext&, SolverResult&) override { throw std::bad_alloc(); }
 };
 }  // namespace
 

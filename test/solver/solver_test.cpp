@@ -39,7 +39,10 @@ public:
   Liar() : Solver("liar") {}
 
 protected:
-  void doSolve(const DelassusProblem&, SolverResult& result) override { result.status = SolverStatus::CONVERGED; }
+  void doSolve(const DelassusProblem&, const SolveContext&, SolverResult& result) override
+  {
+    result.status = SolverStatus::CONVERGED;
+  }
 };
 
 IncrementalProblem everyLaw(std::uint32_t seed)

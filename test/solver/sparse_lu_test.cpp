@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,31 @@ TEST(SparseLuTest, SolvesWhateverWasFactoredBefore)
   for (const auto& [size, far] : std::vector<std::pair<int, int>>{
            {300, 17}, {5000, 17}, {300, 23}, {300, 23}, {2500, 40}, {2500, 90}, {2500, 90}, {6000, 61}, {300, 17}})
     EXPECT_LT(error(lu, banded(size, far)), 1e-12) << size << " rows, second diagonal at " << far;
+}
+
+// UMFPACK with BLAS above 1800 rows, ordered by METIS above 5000, which both have state of the whole process.
+TEST(SparseLuTest, TwoThreadsGiveTheBitsOfOneAfterTheOther)
+{
+  const auto solutions = [](int turn, std::vector<Eigen::VectorXd>& all)
+  {
+    for (int k = 0; k < 6; ++k)
+    {
+      SparseLu lu;
+      lu.matrix() = banded(k % 2 == 0 ? 6000 : 2500, 61 + 10 * turn + k);
+      ASSERT_TRUE(lu.factor());
+      Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(lu.matrix().cols(), -1.0, 2.0);
+      lu.solve(x);
+      all.push_back(x);
+    }
+  };
+  std::vector<Eigen::VectorXd> alone[2], together[2];
+  for (const int turn : {0, 1})
+    solutions(turn, alone[turn]);
+  std::thread first(solutions, 0, std::ref(together[0])), second(solutions, 1, std::ref(together[1]));
+  first.join();
+  second.join();
+  for (const int turn : {0, 1})
+    EXPECT_EQ(alone[turn], together[turn]);
 }
 
 TEST(SparseLuTest, SaysThatAMatrixIsSingular)

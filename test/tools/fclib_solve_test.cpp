@@ -173,6 +173,34 @@ TEST_F(FclibSolveTest, OutputHoldsTheProblemAndItsSolution)
   EXPECT_EQ(readFclib(file("next.hdf5")).solution->r.norm(), 0.0);
 }
 
+TEST_F(FclibSolveTest, HistoryEndsWithTheReportedResidualWhateverTheMethod)
+{
+  const std::string path = globalFile(), history = file("history.csv");
+  for (const SolverEntry& entry : solverRegistry())
+  {
+    SCOPED_TRACE(entry.name);
+    const CommandResult result =
+        solve(path + " --json --max-iterations 50 --solver " + entry.name + " --history " + history);
+    ASSERT_NE(result.code, 2) << result.errors;
+    const nlohmann::json answer = nlohmann::json::parse(result.output);
+    const std::string text = textOf(history);
+    EXPECT_EQ(text.rfind("iteration,seconds,residual\n", 0), 0u) << text;
+    ASSERT_GE(lines(text), 3) << text;
+    const std::string last = text.substr(text.rfind('\n', text.size() - 2) + 1);
+    EXPECT_EQ(std::stod(last.substr(last.rfind(',') + 1)), answer["residual"].get<double>()) << last;
+  }
+}
+
+TEST_F(FclibSolveTest, HistoryMustBeAWritableFileOfItsOwn)
+{
+  const std::string path = localFile();
+  expectRefused(solve(path + " --history " + path), "is FILE itself");
+  expectRefused(solve(path + " --history " + file("nowhere/history.csv")), "cannot write");
+  expectRefused(solve(path + " --history " + folder_.string()), "cannot write");
+  expectRefused(solve(path + " --history " + file("a") + " --output " + file("a")), "is --output as well");
+  EXPECT_NE(solve("--help").output.find("--history"), std::string::npos);
+}
+
 TEST_F(FclibSolveTest, OutputMustNotBeTheFileAndMustBeWritable)
 {
   const std::string path = localFile();

@@ -73,6 +73,40 @@ TEST_F(GenerateProblemTest, ComparesWhatWasGenerated)
   EXPECT_THAT(result.output, HasSubstr(",cadoux_newton,CONVERGED,"));
 }
 
+TEST_F(GenerateProblemTest, ComparisonWritesAHistoryASolve)
+{
+  ASSERT_EQ(runTool("generate_problem", "alea --contacts 5 " + file("a.hdf5")).code, 0);
+  ASSERT_EQ(runTool("generate_problem", "alea --contacts 6 " + file("b.hdf5")).code, 0);
+  const std::string call = file("a.hdf5") + " " + file("b.hdf5") + " --solvers ac_newton,portfolio --history ";
+  ASSERT_EQ(runTool("compare_solvers", call + file("new/folder")).code, 0);
+  for (const char* name : {"a_ac_newton", "a_portfolio", "b_ac_newton", "b_portfolio"})
+  {
+    const std::string text = textOf(file(std::string("new/folder/") + name + ".csv"));
+    EXPECT_EQ(text.rfind("iteration,seconds,residual,file,solver\n", 0), 0u) << name << text;
+    EXPECT_GE(lines(text), 3) << name;
+  }
+  EXPECT_THAT(textOf(file("new/folder/b_portfolio.csv")), HasSubstr("b.hdf5,portfolio\n"));
+  EXPECT_THAT(runTool("compare_solvers", "--help").output, HasSubstr("--history"));
+}
+
+TEST_F(GenerateProblemTest, AHistoryThatCannotBeWrittenIsOneLine)
+{
+  ASSERT_EQ(runTool("generate_problem", "alea --contacts 5 " + file("a.hdf5")).code, 0);
+  fs::create_directories(file("other"));
+  fs::copy(file("a.hdf5"), file("other/a.hdf5"));
+  const auto refused = [&](const std::string& arguments, const char* part)
+  {
+    const CommandResult result = runTool("compare_solvers", file("a.hdf5") + " --solvers portfolio " + arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    EXPECT_EQ(lines(result.errors), 1) << result.errors;
+    EXPECT_THAT(result.errors, HasSubstr(part));
+    EXPECT_EQ(result.output, "");
+  };
+  refused("--history " + file("a.hdf5"), "is no folder to write to");
+  refused("--history " + file("a.hdf5") + "/below", "is no folder to write to");
+  refused(file("other/a.hdf5") + " --history " + file("histories"), "two files are called a.hdf5");
+}
+
 TEST_F(GenerateProblemTest, ComparisonRefusesBadOptionsBeforeItTouchesAFile)
 {
   ASSERT_EQ(runTool("generate_problem", "alea --contacts 5 " + file("a.hdf5")).code, 0);

@@ -22,6 +22,8 @@
  * G (global) or to V, R, s (local) The extra velocities follow the others, moved rows follow those of G; a description
  * should say so (info).
  *
+ * Threads may call these at the same time: HDF5 is used by one of them at a time.
+ *
  * Source: Acary et al. (2014), "FCLIB: a collection of discrete 3D frictional contact problems".
  */
 #include <optional>

@@ -43,7 +43,7 @@ public:
   explicit Admm(const AdmmOptions& options = {});
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   void updateShift(const DelassusProblem& problem);

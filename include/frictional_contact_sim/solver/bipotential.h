@@ -54,7 +54,7 @@ public:
   OperatorUse operatorUse() const override { return OperatorUse::DENSE; }
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   bool factor();

@@ -36,7 +36,7 @@ public:
   OperatorUse operatorUse() const override { return map_.operatorUse(); }
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   Eigen::VectorXd apply(const Eigen::VectorXd& x) const;

@@ -69,7 +69,7 @@ public:
   explicit CadouxNewton(const CadouxNewtonOptions& options = {}, std::unique_ptr<ConvexSolver> inner = nullptr);
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   CadouxNewtonOptions options_;

@@ -37,7 +37,7 @@ public:
   OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   struct Point

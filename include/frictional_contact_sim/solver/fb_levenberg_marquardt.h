@@ -36,7 +36,7 @@ public:
   void setOptions(const FbLevenbergMarquardtOptions& options);
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   bool tryStep(double lambda, double& merit, double& gain);

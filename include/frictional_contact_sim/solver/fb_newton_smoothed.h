@@ -44,7 +44,7 @@ public:
   void setOptions(const FbNewtonSmoothedOptions& options);
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   bool lineSearch(double alpha, double merit, int halvings);

@@ -48,10 +48,11 @@ public:
   OperatorUse operatorUse() const override { return OperatorUse::PRODUCTS; }
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
-  double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& z, Eigen::VectorXd& field);
+  double evaluate(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& z,
+                  Eigen::VectorXd& field);
   void advance(double theta);
 
   FixedPointMap map_;

@@ -41,11 +41,11 @@ public:
 
 protected:
   std::unique_ptr<Solver> sibling() const override;
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   double sweep(const DelassusProblem& problem, Eigen::VectorXd& r) const;
-  void extrapolate(const DelassusProblem& problem, Eigen::VectorXd& r);
+  void extrapolate(const DelassusProblem& problem, const SolveContext& context, Eigen::VectorXd& r);
 
   GaussSeidelOptions options_;
   Eigen::VectorXd velocity_;

@@ -43,10 +43,11 @@ public:
   explicit InteriorPoint(const InteriorPointOptions& options = {});
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
-  bool run(const DelassusProblem& problem, double shift, double slip_centring, OuterLoop& loop, SolverResult& result);
+  bool run(const DelassusProblem& problem, const SolveContext& context, double shift, double slip_centring,
+           OuterLoop& loop, SolverResult& result);
   void updateSlip(const DelassusProblem& problem);
 
   InteriorPointOptions options_;

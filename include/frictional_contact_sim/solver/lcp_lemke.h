@@ -69,7 +69,7 @@ public:
   OperatorUse operatorUse() const override { return OperatorUse::DENSE; }
 
 protected:
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   bool align(const DelassusProblem& problem, const Eigen::VectorXd& r, double damping);

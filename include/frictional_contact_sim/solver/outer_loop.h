@@ -17,8 +17,8 @@ public:
    * @brief The result's residual becomes unknown: u of a loop's iterates is not always W r + q to the last bit.
    * @param window iterations without the best residual falling by a tenth that count as a stall; no rule by default
    */
-  OuterLoop(double tolerance, SolverResult& result, int window = std::numeric_limits<int>::max())
-    : tolerance_(tolerance), result_(result), window_(window)
+  OuterLoop(const SolveContext& context, SolverResult& result, int window = std::numeric_limits<int>::max())
+    : context_(context), result_(result), window_(window)
   {
     result.residual = UNKNOWN_RESIDUAL;
   }
@@ -35,7 +35,7 @@ public:
 
   /** @brief True when the iterations or the time are used up, with status and message (`exhausted`, or the time) set.
    */
-  bool outOfBudget(int max_iterations, bool time_is_up, const char* exhausted);
+  bool outOfBudget(const char* exhausted);
 
   /**
    * @brief Relative tolerance of the next inner problem: accuracy times the last residual, not below tolerance / 10.
@@ -47,7 +47,7 @@ public:
   int sinceProgress() const { return since_; }
 
 private:
-  double tolerance_;
+  const SolveContext& context_;
   SolverResult& result_;
   int window_;
   double last_ = 1.0;

@@ -71,14 +71,16 @@ protected:
    * sweep of Gauss-Seidel would lose.
    */
   bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u) override;
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   static void solveApart(const DelassusProblem& problem, Eigen::VectorXd& r);
-  double criterion(const DelassusProblem& problem, const Eigen::VectorXd& r);
-  bool tryNewton(AcNewton& newton, const DelassusProblem& problem, int steps, SolverResult& result);
-  bool tryHaslinger(const DelassusProblem& problem, SolverResult& result);
-  bool run(Solver& method, const DelassusProblem& problem, int budget, SolverResult& result, double margin = 1.0);
+  double criterion(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& r);
+  bool tryNewton(AcNewton& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
+                 SolverResult& result);
+  bool tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  bool run(Solver& method, const DelassusProblem& problem, const SolveContext& context, int budget,
+           SolverResult& result, double margin = 1.0);
 
   PortfolioOptions options_;
   std::unique_ptr<GaussSeidel> gauss_seidel_;

@@ -71,10 +71,10 @@ public:
 
 protected:
   std::unique_ptr<Solver> sibling() const override;
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
   // For methods that go another way along the same step (solver/swept_newton.h).
-  void prepare(const DelassusProblem& problem);
+  void prepare(const DelassusProblem& problem, const SolveContext& context);
   /** @brief Phi at (u, r), its Jacobians when asked for. @return |Phi/rho|^2 [m^2/s^2] */
   double evaluate(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r, bool jacobians);
   /** @brief step_ from the last evaluation with Jacobians, alpha_ and perturbation_ (0: at the centre, where a small
@@ -82,7 +82,7 @@ protected:
   bool direction(const DelassusProblem& problem);
   double alpha_ = 0.0;
   Eigen::VectorXd u_, step_, best_r_;
-  Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law
+  Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law; rho_normal_ is rho_i of one-dimensional ones
 
 private:
   enum class Inner
@@ -101,9 +101,9 @@ private:
   void substitute(const DelassusProblem& problem);
   void refine(const DelassusProblem& problem);
   void moveCentre(const Eigen::VectorXd& r);
-  double criterion(const DelassusProblem& problem, SolverResult& result);
+  double criterion(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   double evaluateProximal(const DelassusProblem& problem, const Eigen::VectorXd& r);
-  Inner solveProximal(const DelassusProblem& problem, SolverResult& result);
+  Inner solveProximal(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   double lineSearch(const DelassusProblem& problem, const Eigen::VectorXd& r);
   void keepBest(double value, const Eigen::VectorXd& r);
 

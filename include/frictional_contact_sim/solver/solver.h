@@ -10,7 +10,6 @@
  * message names the island's first law). One that fails leaves the others their answers. The residual is the whole
  * problem's.
  */
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "frictional_contact_sim/problem/delassus_problem.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
 #include "frictional_contact_sim/problem/residual.h"
+#include "frictional_contact_sim/solver/solve_context.h"
 
 namespace frictional_contact_sim
 {
@@ -45,6 +45,7 @@ struct StoppingOptions
   bool split_islands = true;  ///< solve islands apart; false only to compare
   /// How W is kept. MATRIX_FREE: global problems, methods with operatorUse() == PRODUCTS; W is then never formed.
   OperatorKind operator_kind = OperatorKind::AUTOMATIC;
+  bool record_history = false;  ///< fill SolverResult::history; changes no bit of the answer
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -60,6 +61,15 @@ struct SolverResult
   std::string solver;  ///< registry name of the method whose answer this is
   std::vector<std::string> tried;  ///< names of the methods run, in order (portfolio)
   std::string message;  ///< why it stopped, one line, empty when converged
+  /// |e_i| of problem/residual.h at the answer, a law each, with rho_i of the local problem [m/s]
+  Eigen::VectorXd law_errors;
+  /**
+   * With record_history: the stopping criterion (E of the local problem, see SolveContext::residual) at every iterate
+   * the methods judged, better or worse, in the order of time; last the answer, with `residual`. Methods of a portfolio
+   * and islands, which are solved one after another, count their iterations on from each other; an island's entries are
+   * relative to its own scale.
+   */
+  std::vector<HistoryEntry> history;
 };
 
 /// SolverResult::residual inside a solve, as long as the stopping criterion has not been evaluated.
@@ -97,16 +107,15 @@ public:
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
   const StoppingOptions& stopping() const { return stopping_; }
-  /** @brief rho_i = 1/lambda_max(W_ii) of the laws of the last local problem, in their order [kg]. */
-  const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
 
 protected:
   /**
    * @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message.
    * result.residual is the stopping criterion at that r, before (then result.solution.u = W r + q too) and after, or
-   * negative when it is not known; it only saves evaluations, solve() judges for itself.
+   * negative when it is not known; it only saves evaluations, solve() judges for itself. The criterion at every iterate
+   * that the method judges goes to context.note().
    */
-  virtual void doSolve(const DelassusProblem& problem, SolverResult& result) = 0;
+  virtual void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) = 0;
   /**
    * @brief Another object of this method with the same options, to keep the workspace of islands of another shape.
    * @return nullptr (the default): this one does them all, and resizes its workspace when shapes alternate
@@ -120,42 +129,36 @@ protected:
    * @return false = there is no such start, r and u are untouched (the default: r = 0 is the only one)
    */
   virtual bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
-  bool timeIsUp() const;
-  /** @brief True when there is no guess; refinements of a global solve have one, whoever called it. */
-  bool coldStart() const { return cold_start_; }
   /**
-   * @brief Runs another method on the same problem from result.solution.r, within this call's clock, without the checks
-   * and the final judgement of solve(): for methods made of methods. result.residual as for doSolve().
+   * @brief Runs another method on the same problem from result.solution.r, without the checks and the final judgement
+   * of solve(): for methods made of methods. result.residual as for doSolve().
    */
-  void delegate(Solver& method, const DelassusProblem& problem, double tolerance, int max_iterations,
-                SolverResult& result) const;
-  /**
-   * @brief The stopping criterion at (u, r), u = W r + q given; costs no product with W: E of the problem being solved,
-   * but impulses count in its scale at most IMPULSE_CAP times as much as velocities. Where no solution exists they run
-   * away and plain E would vanish.
-   */
-  double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
+  static void delegate(Solver& method, const DelassusProblem& problem, const SolveContext& context,
+                       SolverResult& result);
 
 private:
-  double measure(const DelassusProblem& problem, const Solution& solution);
-  double solveAtOnce(const DelassusProblem& problem, SolverResult& result);
-  double solveLocal(const DelassusProblem& problem, const Solution* guess, SolverResult& result);
-  void solveIslands(const DelassusProblem& problem, SolverResult& result);
-  void solveIsland(const DelassusProblem& whole, double whole_free_velocity, double deadline, IslandSlot& slot);
-  void judge(double residual, double tolerance, SolverResult& result) const;
-  double secondsSinceStart() const;
-  void checkOperator(bool global) const;
+  /** @brief E, and the stopping criterion at the same point. */
+  struct Verdict
+  {
+    double residual = 0.0;
+    double criterion = 0.0;
+    bool within(double tolerance) const { return residual <= tolerance && criterion <= tolerance; }
+  };
 
-  static constexpr double IMPULSE_CAP = 1e3;
+  SolveContext begin(SolverResult& result);
+  Verdict solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  Verdict solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context,
+                     SolverResult& result);
+  void solveIslands(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  void solveIsland(const DelassusProblem& whole, const SolveContext& context, IslandSlot& slot);
+  void finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict, SolverResult& result);
+  void judge(const Verdict& verdict, SolverResult& result) const;
+  void checkOperator(bool global) const;
+  static Verdict measure(const DelassusProblem& problem, const SolveContext& context, const Solution& solution);
 
   std::string name_;
   StoppingOptions stopping_;
-  std::chrono::steady_clock::time_point start_;
-  double deadline_ = 0.0;  ///< seconds after start_ when time is up, 0 = never
-  Eigen::VectorXd step_lengths_;
-  bool cold_start_ = true;  ///< no guess was given: the method's own start serves the whole and each island
-  double free_velocity_ = 0.0;
-  double criterion_ = 0.0;  ///< stopping criterion of the last answer
+  Eigen::VectorXd step_lengths_;  ///< of the local problem being solved
   GlobalResidualData global_;
   Solution warm_;
   DelassusProblem converted_;  ///< a local problem in another storage, when asked for

@@ -48,11 +48,11 @@ public:
 
 protected:
   std::unique_ptr<Solver> sibling() const override;
-  void doSolve(const DelassusProblem& problem, SolverResult& result) override;
+  void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) override;
 
 private:
   using SemismoothNewton::setOptions;  // would set what this method sets itself
-  double sweptStep(const DelassusProblem& problem, const Eigen::VectorXd& r);
+  double sweptStep(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& r);
   void adapt(bool sufficient);
 
   SweptNewtonOptions options_;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "options_check.h"
+#include "../options_check.h"
 
 namespace frictional_contact_sim
 {

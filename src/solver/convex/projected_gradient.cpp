@@ -1,6 +1,6 @@
 #include "frictional_contact_sim/solver/convex/projected_gradient.h"
 
-#include "options_check.h"
+#include "../options_check.h"
 
 namespace frictional_contact_sim
 {

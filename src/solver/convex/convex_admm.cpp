@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "options_check.h"
+#include "../options_check.h"
 
 namespace frictional_contact_sim
 {

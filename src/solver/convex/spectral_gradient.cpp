@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "options_check.h"
+#include "../options_check.h"
 
 namespace frictional_contact_sim
 {

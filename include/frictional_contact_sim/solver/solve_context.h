@@ -1,0 +1,57 @@
+#pragma once
+/**
+ * @file solve_context.h
+ * @brief What a method is told about one solve beside the problem and the guess; made by Solver::solve, passed down.
+ *
+ * Whoever runs a method inside another copies its own context and changes the copy (a smaller budget, another
+ * tolerance): no solver writes into another one.
+ */
+#include <Eigen/Core>
+#include <chrono>
+#include <vector>
+
+#include "frictional_contact_sim/problem/delassus_problem.h"
+
+namespace frictional_contact_sim
+{
+/** @brief The stopping criterion at an iterate that a method judged. */
+struct HistoryEntry
+{
+  int iteration = 0;
+  double seconds = 0.0;  ///< wall clock since the call of Solver::solve [s]
+  double residual = 0.0;  ///< [-]
+};
+
+struct SolveContext
+{
+  const Eigen::VectorXd& step_lengths;  ///< rho_i = 1/lambda_max(W_ii) of the laws, in their order [kg]
+  double free_velocity = 0.0;  ///< |q|_inf, of an island at least a share of the whole's: the scale of E [m/s]
+  double tolerance = 1e-8;  ///< on the stopping criterion [-]
+  int max_iterations = 1000;
+  bool cold_start = true;  ///< no guess was given; refinements of a global solve have one, whoever called it
+  std::chrono::steady_clock::time_point start{};  ///< of the call of Solver::solve
+  double deadline = 0.0;  ///< seconds after start when time is up, 0 = never
+  std::vector<HistoryEntry>* history = nullptr;  ///< where iterates are noted; nullptr = nowhere
+  int iterations_before = 0;  ///< made in this solve before the method was called, counted in the history only
+
+  double seconds() const;
+  bool timeIsUp() const { return deadline > 0.0 && seconds() > deadline; }
+  /**
+   * @brief The stopping criterion at (u, r), u = W r + q given; costs no product with W: E of the problem being solved,
+   * but impulses count in its scale at most IMPULSE_CAP times as much as velocities. Where no solution exists they run
+   * away and plain E would vanish.
+   */
+  double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
+  /** @brief Called by a method with the criterion at each of its iterates; nothing but a comparison without history. */
+  void note(int iteration, double value) const
+  {
+    if (history != nullptr)
+      history->push_back({iterations_before + iteration, seconds(), value});
+  }
+  /** @brief Iteration of the last entry, where the next island goes on. */
+  int notedIterations() const { return history == nullptr || history->empty() ? 0 : history->back().iteration; }
+
+  static constexpr double IMPULSE_CAP = 1e3;
+};
+
+}  // namespace frictional_contact_sim
