@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "frictional_contact_sim/simulation/root_motion.h"
+
 namespace frictional_contact_sim
 {
 const char* const WORLD_FRAME = "world";
@@ -29,12 +31,6 @@ void fillQuaternion(const Eigen::Matrix3d& rotation, geometry_msgs::Quaternion& 
   target.y = quaternion.y();
   target.z = quaternion.z();
   target.w = quaternion.w();
-}
-
-/** @brief Pose of the root link: the body frame of body 0 is the frame of the link it is named after. */
-const Eigen::Isometry3d& rootPose(const Simulator& simulator, int body)
-{
-  return simulator.data(body).body_pose.front();
 }
 
 void fillHeader(const ros::Time& stamp, std_msgs::Header& header)
@@ -192,18 +188,12 @@ void fillOdometry(const Simulator& simulator, const NameTable& names, int body, 
 {
   fillHeader(stamp, message.header);
   message.child_frame_id = names.roots[body];
-  const Eigen::Isometry3d& pose = rootPose(simulator, body);
+  const Eigen::Isometry3d pose = rootPose(simulator, body);
   fillPoint(pose.translation(), message.pose.pose.position);
   fillQuaternion(pose.linear(), message.pose.pose.orientation);
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
-  if (simulator.model(body).joints.front().type == JointType::FLOATING)
-  {
-    linear = simulator.velocity(body).head<3>();
-    angular = simulator.velocity(body).segment<3>(3);
-  }
-  fillVector(pose.linear().transpose() * linear, message.twist.twist.linear);
-  fillVector(pose.linear().transpose() * angular, message.twist.twist.angular);
+  const Vector6d velocity = rootVelocity(simulator, body);
+  fillVector(pose.linear().transpose() * velocity.head<3>(), message.twist.twist.linear);
+  fillVector(pose.linear().transpose() * velocity.tail<3>(), message.twist.twist.angular);
 }
 
 void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
@@ -211,7 +201,7 @@ void fillTransform(const Simulator& simulator, const NameTable& names, int body,
 {
   fillHeader(stamp, message.header);
   message.child_frame_id = names.roots[body];
-  const Eigen::Isometry3d& pose = rootPose(simulator, body);
+  const Eigen::Isometry3d pose = rootPose(simulator, body);
   fillVector(pose.translation(), message.transform.translation);
   fillQuaternion(pose.linear(), message.transform.rotation);
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "frictional_contact_sim/model/kinematics.h"
+#include "frictional_contact_sim/simulation/root_motion.h"
 
 namespace frictional_contact_sim
 {
@@ -14,16 +14,6 @@ void write(std::ofstream& file, const Eigen::Vector3d& vector)
   file << ',' << vector.x() << ',' << vector.y() << ',' << vector.z();
 }
 }  // namespace
-
-Eigen::Isometry3d rootPose(const Simulator& simulator, int body)
-{
-  return simulator.data(body).body_pose.front();
-}
-
-Vector6d rootVelocity(const Simulator& simulator, int body)
-{
-  return pointVelocity(simulator.data(body), 0, rootPose(simulator, body).translation());
-}
 
 std::ofstream CsvRecorder::open(const std::string& name, const char* columns) const
 {

@@ -13,6 +13,7 @@
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/simulation/csv_recorder.h"
+#include "frictional_contact_sim/simulation/root_motion.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/solver/registry.h"

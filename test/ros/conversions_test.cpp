@@ -119,6 +119,24 @@ TEST(ConversionsTest, OdometryTwistIsInTheChildFrame)
   EXPECT_NEAR(message.pose.pose.orientation.z, std::sqrt(0.5), 1e-15);
 }
 
+TEST(ConversionsTest, OdometryOfAConveyorHasItsPrescribedMotion)
+{
+  Scenario scenario = boxScenario();
+  scenario.ground.reset();
+  scenario.bodies[0].base = BaseType::FIXED;
+  scenario.bodies[0].pose = Eigen::Isometry3d(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()));
+  scenario.bodies[0].motion.emplace(Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.0, 0.0, 0.2));
+  Simulator simulator(scenario);
+  simulator.step();
+  nav_msgs::Odometry message;
+  fillOdometry(simulator, makeNameTable(simulator), 0, ros::Time(1, 0), message);
+  // World x is -y of a box turned by +90 degrees, and by 0.0002 in the step; round-off beside that.
+  EXPECT_NEAR(message.twist.twist.linear.x, -0.1 * std::sin(0.0002), 1e-15);
+  EXPECT_NEAR(message.twist.twist.linear.y, -0.1 * std::cos(0.0002), 1e-15);
+  EXPECT_NEAR(message.twist.twist.angular.z, 0.2, 1e-15);
+  EXPECT_NEAR(message.pose.pose.position.x, 0.0001, 1e-15);
+}
+
 TEST(NamesTest, NamesThatOccurTwiceGetTheirRobot)
 {
   const Simulator simulator(twinScenario());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "frictional_contact_sim/simulation/csv_recorder.h"
+#include "frictional_contact_sim/simulation/root_motion.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"

@@ -35,9 +35,4 @@ private:
   std::ofstream steps_;
 };
 
-/** @brief Velocity (linear; angular) of the root link origin, world axes. */
-Vector6d rootVelocity(const Simulator& simulator, int body);
-/** @brief World pose of the root link. */
-Eigen::Isometry3d rootPose(const Simulator& simulator, int body);
-
 }  // namespace frictional_contact_sim
