@@ -34,31 +34,37 @@ void append(std::vector<std::string>& warnings, const ParameterReader& reader)
   }
 }
 
+/** @brief An unknown key of a material is refused, as in a scenario file: a misspelt friction is another simulation. */
 Material readMaterial(ParameterReader& reader, const Material& fallback)
 {
   Material material = fallback;
   reader.read("friction", material.friction, notNegative());
   reader.read("restitution", material.restitution, between(0.0, 1.0));
+  for (const std::string& name : reader.unknown())
+  {
+    throw ParameterError(name + ": unknown key, expected friction or restitution");
+  }
   return material;
 }
 
-/** @brief The same layout as `materials` of a scenario file: default, pairs, and single materials by name. */
-void readMaterials(ParameterReader& reader, NodeParameters& parameters)
+/**
+ * @brief The same layout as `materials` of a scenario file: default, pairs, and single materials by name. The default
+ * is read first: the others take from it what they do not say.
+ */
+void readMaterials(ParameterReader& reader, MaterialTable& table)
 {
-  MaterialTable& table = parameters.scenario.materials;
   reader.read("default_friction", table.fallback.friction, notNegative());
   reader.read("default_restitution", table.fallback.restitution, between(0.0, 1.0));
   ParameterReader materials = reader.child("materials");
+  ParameterReader fallback = materials.child("default");
+  table.fallback = readMaterial(fallback, table.fallback);
   for (const std::string& name : materials.names())
   {
-    if (name == "pairs")
+    if (name != "default" && name != "pairs")
     {
-      continue;
+      ParameterReader one = materials.child(name);
+      table.materials[name] = readMaterial(one, table.fallback);
     }
-    ParameterReader one = materials.child(name);
-    Material& target = name == "default" ? table.fallback : table.materials[name];
-    target = readMaterial(one, table.fallback);
-    append(parameters.warnings, one);
   }
   XmlRpc::XmlRpcValue pairs = materials.raw("pairs");
   if (!materials.has("pairs"))
@@ -81,7 +87,6 @@ void readMaterials(ParameterReader& reader, NodeParameters& parameters)
     }
     std::sort(names.begin(), names.end());
     table.pairs[{names[0], names[1]}] = readMaterial(pair, table.fallback);
-    append(parameters.warnings, pair);
   }
 }
 
@@ -168,7 +173,7 @@ void readRobot(ParameterReader& reader, const std::string& robot_description, No
   }
   reader.read("disable_collisions", body.disable_collisions);
   readGround(reader, parameters);
-  readMaterials(reader, parameters);
+  readMaterials(reader, parameters.scenario.materials);
   parameters.scenario.name = "robot_description";
   parameters.scenario.bodies.push_back(body);
 }

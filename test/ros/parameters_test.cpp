@@ -113,6 +113,36 @@ TEST(ParametersTest, ValuesReachTheScenario)
   EXPECT_EQ(scenario.materials.pairs.at({"ground", "rubber"}).friction, 1.0);  // alphabetical order
 }
 
+TEST(ParametersTest, MaterialsTakeWhatTheyDoNotSayFromTheDefaultWhateverTheirNames)
+{
+  XmlRpcValue tree;
+  tree["default_friction"] = 0.1;
+  tree["materials"]["default"]["friction"] = 0.3;
+  tree["materials"]["asphalt"]["restitution"] = 0.5;  // before and after "default" in the alphabet
+  tree["materials"]["rubber"]["restitution"] = 0.6;
+  tree["materials"]["pairs"].setSize(1);
+  tree["materials"]["pairs"][0]["between"] = names({"asphalt", "rubber"});
+  const MaterialTable table = readParameters(tree, ROBOT).scenario.materials;
+  EXPECT_EQ(table.fallback.friction, 0.3);
+  EXPECT_EQ(table.find("asphalt").friction, 0.3);
+  EXPECT_EQ(table.find("rubber").friction, 0.3);
+  EXPECT_EQ(table.find("asphalt").restitution, 0.5);
+  EXPECT_EQ(table.pairs.at({"asphalt", "rubber"}).friction, 0.3);
+}
+
+TEST(ParametersTest, AnUnknownKeyOfAMaterialIsRefusedAsInAScenarioFile)
+{
+  XmlRpcValue materials;
+  materials["rubber"]["frction"] = 0.9;
+  EXPECT_THAT(complaint("materials", materials),
+              testing::AllOf(HasSubstr("~materials/rubber/frction"), HasSubstr("friction or restitution")));
+  XmlRpcValue creep;
+  creep["pairs"].setSize(1);
+  creep["pairs"][0]["between"] = names({"wheel", "rail"});
+  creep["pairs"][0]["law"] = "creep";  // of scenario files only
+  EXPECT_THAT(complaint("materials", creep), HasSubstr("~materials/pairs/0/law"));
+}
+
 TEST(ParametersTest, ALineNamesParameterAndWhatWasFoundAndExpected)
 {
   EXPECT_THAT(complaint("time_step", XmlRpcValue("fast")),
