@@ -83,4 +83,12 @@ JointCommand positionCommand(double target, const std::string& joint, const std:
   return command;
 }
 
+JointCommand effortCommand(double target)
+{
+  JointCommand command;
+  command.mode = JointCommand::Mode::EFFORT;
+  command.target = target;
+  return command;
+}
+
 }  // namespace frictional_contact_sim

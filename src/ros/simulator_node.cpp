@@ -157,9 +157,10 @@ void SimulatorNode::command(const std::string& topic, JointCommand::Mode mode,
     for (const auto& [index, target] : targets())
     {
       const JointHandle& joint = names_.joints[index];
-      JointCommand command = positionCommand(target, joint.name, parameters_.servo_gains);
-      command.mode = mode;
-      simulator_.setCommand(joint.body, joint.joint, command);
+      simulator_.setCommand(joint.body, joint.joint,
+                            mode == JointCommand::Mode::EFFORT
+                                ? effortCommand(target)
+                                : positionCommand(target, joint.name, parameters_.servo_gains));
     }
   }
   catch (const std::exception& error)

@@ -206,6 +206,23 @@ TEST(CommandTest, AJointsOwnGainsComeBeforeTheDefault)
   EXPECT_EQ(positionCommand(0.1, "hip", gains).kp, 10.0);
 }
 
+/** @brief Effort of the last joint of two pendulums, one step after a command to it. */
+double effortAfter(const JointCommand& command)
+{
+  Simulator simulator(twinScenario());
+  simulator.setCommand(1, makeNameTable(simulator).joints[3].joint, command);
+  simulator.step();
+  return simulator.effort(1, makeNameTable(simulator).joints[3].joint);
+}
+
+TEST(CommandTest, AServosEffortLimitDoesNotCutACommandedEffort)
+{
+  std::map<std::string, ServoGains> gains;
+  gains["default"] = {100.0, 1.0, 0.1};
+  EXPECT_EQ(effortAfter(positionCommand(1.0, "knee", gains)), 0.1);  // asked for some 100 N m
+  EXPECT_EQ(effortAfter(effortCommand(0.25)), 0.25);
+}
+
 TEST(MarkersTest, ArrowsOfContactsThatAreGoneAreDeleted)
 {
   Simulator simulator(boxScenario());

@@ -72,7 +72,9 @@ class LifecycleTest(unittest.TestCase):
     def test_bad_commands_are_ignored_as_a_whole_with_a_warning(self):
         states = []
         subscriber = rospy.Subscriber("/joint_states", JointState, states.append)
+        # The servos' limit of zero does not concern commands for effort.
         node = node_runner.Node({"base": "fixed", "gravity": [0.0, 0.0, 0.0], "ground": False,
+                                 "servo_gains": {"default": {"max_effort": 0.0}},
                                  "wait_for_subscribers": ["joint_states"]}, node_runner.quadruped_urdf())
         name = node_runner.NAME + "/command/"
         effort = rospy.Publisher(name + "effort", JointState, queue_size=10)

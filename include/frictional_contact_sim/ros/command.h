@@ -38,5 +38,7 @@ JointTargets orderedTargets(const NameTable& names, const std::vector<double>& v
 
 /** @brief The servo of a joint: its own gains, else those of `default`, else defaults from its inertia. */
 JointCommand positionCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains);
+/** @brief An effort: the servo's limit does not concern it, only the URDF's does. */
+JointCommand effortCommand(double target);
 
 }  // namespace frictional_contact_sim
