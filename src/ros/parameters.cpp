@@ -248,6 +248,7 @@ void readFiles(ParameterReader& reader, NodeParameters& parameters)
   {
     requireWritable("~dump_dir", parameters.dump_dir);
   }
+  reader.read("max_dumps", parameters.max_dumps, 1);
   reader.read("bag", parameters.bag);
   if (!parameters.bag.empty())
   {

@@ -20,10 +20,16 @@ constexpr double IDLE_PERIOD = 0.02;  // [s]
 constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
 constexpr double SETTLING_TIME = 0.5;  // between a recorder's subscription and its readiness [s]
 constexpr double COMPLAINT_DELAY = 5.0;  // [s]
+constexpr double FAILURE_PERIOD = 1.0;  // between two lines about failed steps of a run that goes on [s]
 
 double wallSeconds()
 {
   return ros::WallTime::now().toSec();
+}
+
+bool goesOn(FailurePolicy policy)
+{
+  return policy == FailurePolicy::HOLD || policy == FailurePolicy::ACCEPT;
 }
 
 void serveCallbacks(double timeout)
@@ -40,6 +46,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , publisher_(node, private_node, simulator_, names_, parameters)
   , delivery_(publisher_.losslessTopics())
   , pacer_(parameters.real_time_factor)
+  , failure_lines_(goesOn(parameters.on_failure) ? FAILURE_PERIOD : 0.0)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
 {
@@ -224,13 +231,29 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
   return true;
 }
 
+/** @brief A run that goes on may fail at every step: it gets a line a second, and no more than ~max_dumps files. */
+void SimulatorNode::reportFailure(const StepSummary& summary)
+{
+  const bool dumped = dumps_ < parameters_.max_dumps && !summary.fclib_file.empty();
+  if (const std::optional<int> held_back = failure_lines_.pass(wallSeconds()))
+  {
+    ROS_WARN_STREAM("step " << summary.step << ": " << toString(summary.status) << " after " << summary.iterations
+                            << " iterations, residual " << summary.residual
+                            << (dumped ? ", problem in " + summary.fclib_file : "")
+                            << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
+  }
+  if (dumped && ++dumps_ == parameters_.max_dumps)
+  {
+    simulator_.setDumpFolder("");
+    ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir << ", no more are written");
+  }
+}
+
 SimulatorNode::Outcome SimulatorNode::judge(const StepSummary& summary)
 {
   if (summary.status != SolverStatus::CONVERGED)
   {
-    ROS_WARN_STREAM("step " << summary.step << ": " << toString(summary.status) << " after " << summary.iterations
-                            << " iterations, residual " << summary.residual
-                            << (summary.fclib_file.empty() ? "" : ", problem in " + summary.fclib_file));
+    reportFailure(summary);
     if (parameters_.on_failure == FailurePolicy::STOP)
     {
       return Outcome::FAILED;
@@ -338,6 +361,10 @@ int SimulatorNode::run()
   if (outcome_ != Outcome::GO_ON)
   {
     holdForSubscribers();  // the last messages, before the connections close
+  }
+  if (failure_lines_.heldBack() > 0)
+  {
+    ROS_WARN_STREAM("failed steps not shown at the end: " << failure_lines_.heldBack());
   }
   for (const auto& [subscriber, count] : delivery_.dropped())
   {

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Start and end of the node: bad input gives one clear line and exit code 2; an interrupt ends it at once."""
+import os
 import tempfile
 import time
 import unittest
@@ -59,6 +60,21 @@ class LifecycleTest(unittest.TestCase):
         node = node_runner.Node({"num_steps": 3, "tolerence": 1e-9}, node_runner.box_urdf())
         self.assertEqual(0, node.wait(), node.stderr())
         self.assertIn("~tolerence", " ".join(node.lines("WARN")))
+
+    def test_steps_that_fail_one_after_another_flood_neither_log_nor_disk(self):
+        with tempfile.TemporaryDirectory() as folder:
+            # One iteration and a tolerance below round-off: every step with a contact fails.
+            node = node_runner.Node({"on_failure": "hold", "solver": "gauss_seidel", "max_iterations": 1,
+                                     "tolerance": 1e-30, "dump_dir": folder, "max_dumps": 3, "num_steps": 500,
+                                     "real_time_factor": 0.0}, node_runner.box_urdf())
+            self.assertEqual(0, node.wait(), node.stderr())
+            self.assertEqual(3, len(os.listdir(folder)), node.stderr())
+        warnings = node.lines("WARN")
+        failures = [line for line in warnings if " step " in line]
+        self.assertTrue(1 <= len(failures) <= 10, node.stderr())  # a line a second; the run takes a fraction of one
+        self.assertEqual(1, len([line for line in warnings if "~max_dumps" in line]), node.stderr())
+        hidden = [int(line.split(": ")[-1]) for line in warnings if "not shown" in line]
+        self.assertGreater(len(failures) + sum(hidden), 400, node.stderr())  # it falls for some 15 steps before
 
     def test_interrupt_ends_it_at_once(self):
         for parameters in ({}, {"start_paused": True}, {"real_time_factor": 0.0}):

@@ -42,6 +42,7 @@ struct NodeParameters
   std::vector<std::string> wait_for_subscribers;  ///< topics that must have a subscriber before the first step
   std::int64_t num_steps = 0;  ///< exit after so many; 0 = never
   std::string dump_dir;  ///< FCLib files of failed steps; empty = none
+  int max_dumps = 20;  ///< at most so many files a run
   std::string bag;  ///< file that a recorder is to write: its folder is checked
   bool publish_base_tf = true;
   std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others

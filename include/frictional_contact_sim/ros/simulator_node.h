@@ -19,6 +19,7 @@
 #include "frictional_contact_sim/ros/delivery.h"
 #include "frictional_contact_sim/ros/pacer.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
+#include "frictional_contact_sim/ros/throttle.h"
 
 namespace frictional_contact_sim
 {
@@ -46,6 +47,7 @@ private:
 
   Outcome advance();
   Outcome judge(const StepSummary& summary);
+  void reportFailure(const StepSummary& summary);
   void runStep();
   void idle();
   void holdForSubscribers();
@@ -62,6 +64,8 @@ private:
   StepPublisher publisher_;
   DeliveryMonitor delivery_;
   Pacer pacer_;
+  Throttle failure_lines_;
+  int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
   std::vector<ros::ServiceServer> services_;
   std::vector<ros::Subscriber> subscribers_;
