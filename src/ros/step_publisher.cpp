@@ -24,7 +24,9 @@ StepDivider::StepDivider(double rate, double time_step)
 {
   if (rate > 0.0)
   {
-    steps_ = static_cast<std::uint64_t>(std::max(1LL, std::llround(1.0 / (rate * time_step))));
+    // No run has so many steps; and beyond 2^63 llround has no answer.
+    constexpr double NEVER = 1e18;
+    steps_ = static_cast<std::uint64_t>(std::max(1LL, std::llround(std::min(NEVER, 1.0 / (rate * time_step)))));
   }
 }
 

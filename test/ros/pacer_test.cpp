@@ -61,5 +61,17 @@ TEST(StepDividerTest, PublishesAtTheRateAsked)
   EXPECT_EQ(count, 100);
 }
 
+TEST(StepDividerTest, ARateNextToNothingIsNeverDue)
+{
+  for (const double rate : {1e-12, 1e-18, 1e-300, 5e-324})  // the last times a time step is zero
+  {
+    const StepDivider never(rate, 0.001);
+    for (std::uint64_t step = 1; step <= 1000; ++step)
+    {
+      ASSERT_FALSE(never.due(step)) << rate;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim
