@@ -37,13 +37,33 @@ bool areNear(const Bounds& a, const Bounds& b, double margin)
 }
 }  // namespace
 
+struct BroadPhase::Allowed
+{
+  std::vector<ShapePair> listed;  ///< tested one by one: all for few shapes, else those with a half space
+  std::vector<char> matrix;  ///< n x n, [a n + b]; empty when all are listed
+  std::vector<int> bounded;  ///< handles of the shapes in the tree
+  std::size_t shape_count = 0;
+};
+
 struct BroadPhase::Tree
 {
   fcl::DynamicAABBTreeCollisionManagerd manager;
   std::vector<std::shared_ptr<fcl::Boxd>> boxes;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
-  std::vector<char> is_allowed;  ///< n x n, [a n + b]
-  int shape_count = 0;
+
+  explicit Tree(const std::vector<int>& handles)
+  {
+    std::vector<fcl::CollisionObjectd*> all;
+    for (const int handle : handles)
+    {
+      boxes.push_back(std::make_shared<fcl::Boxd>(1.0, 1.0, 1.0));
+      objects.push_back(std::make_unique<fcl::CollisionObjectd>(boxes.back()));
+      objects.back()->setUserData(reinterpret_cast<void*>(static_cast<std::intptr_t>(handle)));
+      all.push_back(objects.back().get());
+    }
+    manager.registerObjects(all);
+    manager.setup();
+  }
 
   static int handleOf(const fcl::CollisionObjectd* object)
   {
@@ -51,50 +71,58 @@ struct BroadPhase::Tree
   }
 };
 
-BroadPhase::BroadPhase() = default;
+BroadPhase::BroadPhase() : allowed_(std::make_shared<Allowed>())
+{
+}
 BroadPhase::~BroadPhase() = default;
-BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
-BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
+
+BroadPhase::BroadPhase(const BroadPhase& other) : allowed_(other.allowed_)
+{
+  prepare();
+}
 
 void BroadPhase::reset(std::vector<ShapePair> pairs, const std::vector<Bounds>& bounds)
 {
-  tree_.reset();
-  listed_ = std::move(pairs);
-  if (listed_.size() > MAX_LISTED)
+  const auto allowed = std::make_shared<Allowed>();
+  allowed->shape_count = bounds.size();
+  allowed->listed = std::move(pairs);
+  std::vector<ShapePair>& listed = allowed->listed;
+  if (listed.size() > MAX_LISTED)
   {
-    tree_ = std::make_unique<Tree>();
-    const int n = static_cast<int>(bounds.size());
-    tree_->shape_count = n;
-    tree_->is_allowed.assign(static_cast<std::size_t>(n) * n, 0);
-    for (const ShapePair& pair : listed_)
+    const std::size_t n = bounds.size();
+    allowed->matrix.assign(n * n, 0);
+    for (const ShapePair& pair : listed)
     {
-      tree_->is_allowed[static_cast<std::size_t>(pair.a) * n + pair.b] = 1;
+      allowed->matrix[pair.a * n + pair.b] = 1;
     }
     const auto has_no_plane = [&](const ShapePair& pair)
     { return !isHalfSpace(bounds[pair.a]) && !isHalfSpace(bounds[pair.b]); };
-    listed_.erase(std::remove_if(listed_.begin(), listed_.end(), has_no_plane), listed_.end());
-    std::vector<fcl::CollisionObjectd*> all;
-    for (int i = 0; i < n; ++i)
+    listed.erase(std::remove_if(listed.begin(), listed.end(), has_no_plane), listed.end());
+    for (std::size_t i = 0; i < n; ++i)
     {
       if (!isHalfSpace(bounds[i]))
       {
-        tree_->boxes.push_back(std::make_shared<fcl::Boxd>(1.0, 1.0, 1.0));
-        tree_->objects.push_back(std::make_unique<fcl::CollisionObjectd>(tree_->boxes.back()));
-        tree_->objects.back()->setUserData(reinterpret_cast<void*>(static_cast<std::intptr_t>(i)));
-        all.push_back(tree_->objects.back().get());
+        allowed->bounded.push_back(static_cast<int>(i));
       }
     }
-    tree_->manager.registerObjects(all);
-    tree_->manager.setup();
   }
+  allowed_ = allowed;
+  prepare();
+}
+
+/// The parts of one world alone: its tree, and room for what it finds.
+void BroadPhase::prepare()
+{
+  tree_ = allowed_->matrix.empty() ? nullptr : std::make_unique<Tree>(allowed_->bounded);
+  const std::size_t room = 16 * allowed_->shape_count;
   candidates_.clear();
-  candidates_.reserve(std::min<std::size_t>(listed_.size(), 16 * bounds.size()) + 16 * bounds.size());
+  candidates_.reserve(std::min(allowed_->listed.size(), room) + room);
 }
 
 const std::vector<ShapePair>& BroadPhase::candidates(const std::vector<Bounds>& bounds, double margin)
 {
   candidates_.clear();
-  for (const ShapePair& pair : listed_)
+  for (const ShapePair& pair : allowed_->listed)
   {
     if (areNear(bounds[pair.a], bounds[pair.b], margin))
     {
@@ -117,20 +145,20 @@ const std::vector<ShapePair>& BroadPhase::candidates(const std::vector<Bounds>& 
   tree_->manager.update();
   struct Query
   {
-    const Tree& tree;
+    const Allowed& allowed;
     const std::vector<Bounds>& bounds;
     double margin;
     std::vector<ShapePair>& found;
-  } query{*tree_, bounds, margin, candidates_};
+  } query{*allowed_, bounds, margin, candidates_};
   tree_->manager.collide(&query,
                          [](fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data)
                          {
                            Query& q = *static_cast<Query*>(data);
-                           const std::size_t n = q.tree.shape_count;
+                           const std::size_t n = q.allowed.shape_count;
                            const int i = Tree::handleOf(first);
                            const int k = Tree::handleOf(second);
-                           const bool ik = q.tree.is_allowed[i * n + k] != 0;
-                           const bool ki = q.tree.is_allowed[k * n + i] != 0;
+                           const bool ik = q.allowed.matrix[i * n + k] != 0;
+                           const bool ki = q.allowed.matrix[k * n + i] != 0;
                            if ((ik || ki) && areNear(q.bounds[i], q.bounds[k], q.margin))
                            {
                              q.found.push_back(ik ? ShapePair{i, k} : ShapePair{k, i});

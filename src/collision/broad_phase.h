@@ -32,8 +32,9 @@ class BroadPhase
 public:
   BroadPhase();
   ~BroadPhase();
-  BroadPhase(BroadPhase&&) noexcept;
-  BroadPhase& operator=(BroadPhase&&) noexcept;
+  /** @brief Shares the allowed pairs and makes a tree of its own: what is found does not depend on earlier calls. */
+  BroadPhase(const BroadPhase& other);
+  BroadPhase& operator=(const BroadPhase&) = delete;
 
   /** @param pairs allowed pairs sorted by (a, b) @param bounds all shapes */
   void reset(std::vector<ShapePair> pairs, const std::vector<Bounds>& bounds);
@@ -42,8 +43,12 @@ public:
   const std::vector<ShapePair>& candidates(const std::vector<Bounds>& bounds, double margin);
 
 private:
+  struct Allowed;
   struct Tree;
-  std::vector<ShapePair> listed_;  ///< pairs tested one by one: all for few shapes, else those with a half space
+
+  void prepare();
+
+  std::shared_ptr<const Allowed> allowed_;
   std::vector<ShapePair> candidates_;
   std::unique_ptr<Tree> tree_;  ///< many shapes only
 };

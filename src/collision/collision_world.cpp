@@ -20,7 +20,6 @@ struct Instance
 {
   ConvexShape shape;
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the body, or in the world for static shapes
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< world
   bool is_immobile = false;  ///< static, or on a fixed base
 };
 
@@ -34,77 +33,109 @@ struct Robot
   std::set<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape
 };
 
+/// What poses do not change: written while a world is loaded, then shared by its copies.
+struct ShapeModel
+{
+  std::vector<Instance> instances;
+  std::vector<ShapeInfo> infos;
+  std::vector<Robot> robots;
+  std::size_t most_vertices = 0;
+
+  bool mayCollide(int i, int k) const;
+};
+
 std::uint64_t makeId(int a, int b, const PairContact& point)
 {
   return (static_cast<std::uint64_t>(a) << 48) | (static_cast<std::uint64_t>(b) << 32) |
          (static_cast<std::uint64_t>(point.feature_a) << 16) | point.feature_b;
 }
+
+bool ShapeModel::mayCollide(int i, int k) const
+{
+  if (instances[i].is_immobile && instances[k].is_immobile)
+  {
+    return false;
+  }
+  const ShapeInfo& first = infos[i];
+  const ShapeInfo& second = infos[k];
+  if (first.robot < 0 || second.robot < 0)
+  {
+    const ShapeInfo& moving = first.robot < 0 ? second : first;
+    return robots[moving.robot].disabled_static.count({moving.frame, first.robot < 0 ? i : k}) == 0;
+  }
+  if (first.robot != second.robot)
+  {
+    return true;
+  }
+  const Robot& robot = robots[first.robot];
+  const bool is_adjacent =
+      first.body == second.body || robot.parent[first.body] == second.body || robot.parent[second.body] == first.body;
+  return !is_adjacent &&
+         robot.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
+}
 }  // namespace
 
 struct CollisionWorld::Impl
 {
-  std::vector<Instance> instances;
-  std::vector<ShapeInfo> infos;
+  std::shared_ptr<const ShapeModel> model = std::make_shared<ShapeModel>();
+  std::vector<Eigen::Isometry3d> poses;  ///< of the shapes, world
   std::vector<Bounds> bounds;
-  std::vector<Robot> robots;
   BroadPhase broad_phase;
   bool are_pairs_current = false;
-  std::size_t most_vertices = 0;
-  std::unique_ptr<Manifold> manifold = std::make_unique<Manifold>();
+  Manifold manifold;
   std::vector<ContactPoint> contacts;
+
+  Impl() = default;
+  Impl(const Impl& other)
+    : model(other.model)
+    , poses(other.poses)
+    , bounds(other.bounds)
+    , broad_phase(other.broad_phase)
+    , are_pairs_current(other.are_pairs_current)
+  {
+    manifold.reserve(2 * model->most_vertices);
+  }
+
+  /// To load something: a model that is shared is copied first.
+  ShapeModel& edit()
+  {
+    are_pairs_current = false;
+    if (model.use_count() > 1)
+    {
+      model = std::make_shared<ShapeModel>(*model);
+    }
+    return const_cast<ShapeModel&>(*model);  // nobody else has it
+  }
 
   int addInstance(Instance instance, ShapeInfo info)
   {
-    if (instances.size() >= MAX_SHAPES)
+    if (model->instances.size() >= MAX_SHAPES)
     {
       throw std::invalid_argument("collision: more than " + std::to_string(MAX_SHAPES) + " shapes");
     }
-    most_vertices = std::max(most_vertices, instance.shape.core.vertices.size());
-    manifold->reserve(2 * most_vertices);
-    instances.push_back(std::move(instance));
-    infos.push_back(std::move(info));
+    ShapeModel& shapes = edit();
+    shapes.most_vertices = std::max(shapes.most_vertices, instance.shape.core.vertices.size());
+    manifold.reserve(2 * shapes.most_vertices);
+    shapes.instances.push_back(std::move(instance));
+    shapes.infos.push_back(std::move(info));
+    poses.push_back(Eigen::Isometry3d::Identity());
     bounds.emplace_back();
-    are_pairs_current = false;
-    return static_cast<int>(instances.size()) - 1;
+    return static_cast<int>(poses.size()) - 1;
   }
 
   void setPose(int handle, const Eigen::Isometry3d& pose)
   {
-    Instance& instance = instances[handle];
-    instance.pose = pose;
+    const ConvexShape& shape = model->instances[handle].shape;
+    poses[handle] = pose;
     Bounds& box = bounds[handle];
-    box.radius = instance.shape.bounding_radius;
+    box.radius = shape.bounding_radius;
     box.normal = pose.linear().col(2);
-    box.center = pose * instance.shape.center;
-    box.half_extent = instance.shape.half_extent;
-    if (instance.shape.kind != ShapeKind::HALF_SPACE)
+    box.center = pose * shape.center;
+    box.half_extent = shape.half_extent;
+    if (shape.kind != ShapeKind::HALF_SPACE)
     {
-      box.half_extent = pose.linear().cwiseAbs() * instance.shape.half_extent;
+      box.half_extent = pose.linear().cwiseAbs() * shape.half_extent;
     }
-  }
-
-  bool mayCollide(int i, int k) const
-  {
-    if (instances[i].is_immobile && instances[k].is_immobile)
-    {
-      return false;
-    }
-    const ShapeInfo& first = infos[i];
-    const ShapeInfo& second = infos[k];
-    if (first.robot < 0 || second.robot < 0)
-    {
-      const ShapeInfo& moving = first.robot < 0 ? second : first;
-      return robots[moving.robot].disabled_static.count({moving.frame, first.robot < 0 ? i : k}) == 0;
-    }
-    if (first.robot != second.robot)
-    {
-      return true;
-    }
-    const Robot& robot = robots[first.robot];
-    const bool is_adjacent =
-        first.body == second.body || robot.parent[first.body] == second.body || robot.parent[second.body] == first.body;
-    return !is_adjacent &&
-           robot.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
   }
 
   void updatePairs()
@@ -114,14 +145,14 @@ struct CollisionWorld::Impl
       return;
     }
     std::vector<ShapePair> pairs;
-    const int n = static_cast<int>(instances.size());
+    const int n = static_cast<int>(poses.size());
     for (int i = 0; i < n; ++i)
     {
       for (int k = i + 1; k < n; ++k)
       {
-        if (mayCollide(i, k))
+        if (model->mayCollide(i, k))
         {
-          pairs.push_back(infos[i].robot < 0 ? ShapePair{k, i} : ShapePair{i, k});
+          pairs.push_back(model->infos[i].robot < 0 ? ShapePair{k, i} : ShapePair{i, k});
         }
       }
     }
@@ -134,14 +165,13 @@ struct CollisionWorld::Impl
   /// Fills the manifold of a pair, in the frame of b.
   void collidePair(const ShapePair& pair, double margin)
   {
-    const Instance& a = instances[pair.a];
-    const Instance& b = instances[pair.b];
-    const Eigen::Isometry3d a_in_b = b.pose.inverse(Eigen::Isometry) * a.pose;
-    collide(a.shape, b.shape, a_in_b, margin, *manifold);
+    const Eigen::Isometry3d a_in_b = poses[pair.b].inverse(Eigen::Isometry) * poses[pair.a];
+    collide(model->instances[pair.a].shape, model->instances[pair.b].shape, a_in_b, margin, manifold);
   }
 
   const Robot& robot(int index) const
   {
+    const std::vector<Robot>& robots = model->robots;
     if (index < 0 || index >= static_cast<int>(robots.size()))
     {
       throw std::invalid_argument("collision: no robot " + std::to_string(index) + ", there are " +
@@ -155,12 +185,20 @@ CollisionWorld::CollisionWorld() : impl_(std::make_unique<Impl>())
 {
 }
 CollisionWorld::~CollisionWorld() = default;
+CollisionWorld::CollisionWorld(const CollisionWorld& other) : impl_(std::make_unique<Impl>(*other.impl_))
+{
+}
+CollisionWorld& CollisionWorld::operator=(const CollisionWorld& other)
+{
+  impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
 CollisionWorld& CollisionWorld::operator=(CollisionWorld&&) noexcept = default;
 
 int CollisionWorld::addRobot(const MultibodyModel& model)
 {
-  const int index = static_cast<int>(impl_->robots.size());
+  const int index = static_cast<int>(impl_->model->robots.size());
   Robot robot;
   robot.is_mounted = model.joints.front().type == JointType::FIXED &&
                      std::none_of(model.joints.begin(), model.joints.end(),
@@ -187,13 +225,12 @@ int CollisionWorld::addRobot(const MultibodyModel& model)
   for (std::size_t k = 0; k < instances.size(); ++k)
   {
     const CollisionShape& shape = model.shapes[k];
-    const Eigen::Isometry3d pose = shape.placement;
-    const int handle = impl_->addInstance(
-        std::move(instances[k]), {index, shape.body, shape.frame, robot.frame_names.at(shape.frame), shape.name});
+    const int handle = impl_->addInstance(std::move(instances[k]), {index, shape.body, shape.frame, static_cast<int>(k),
+                                                                    robot.frame_names.at(shape.frame), shape.name});
     robot.shapes.push_back(handle);
-    impl_->setPose(handle, pose);
+    impl_->setPose(handle, shape.placement);
   }
-  impl_->robots.push_back(std::move(robot));
+  impl_->edit().robots.push_back(std::move(robot));
   return index;
 }
 
@@ -203,7 +240,7 @@ int CollisionWorld::addStatic(const Geometry& geometry, const Eigen::Isometry3d&
   instance.shape = makeShape(geometry);
   instance.placement = pose;
   instance.is_immobile = true;
-  const int handle = impl_->addInstance(std::move(instance), {-1, -1, -1, name, name});
+  const int handle = impl_->addInstance(std::move(instance), {-1, -1, -1, -1, name, name});
   impl_->setPose(handle, pose);
   return handle;
 }
@@ -223,8 +260,7 @@ void CollisionWorld::disablePair(int robot, const std::string& link_1, const std
     frames[k] = static_cast<int>(found - names.begin());
   }
   std::sort(frames.begin(), frames.end());
-  impl_->robots[robot].disabled.insert(frames);
-  impl_->are_pairs_current = false;
+  impl_->edit().robots[robot].disabled.insert(frames);
 }
 
 std::vector<std::string> CollisionWorld::disableOverlaps()
@@ -234,28 +270,29 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
   const std::vector<ShapePair> candidates = impl_->broad_phase.candidates(impl_->bounds, 0.0);
   for (const ShapePair& pair : candidates)
   {
-    const ShapeInfo& a = impl_->infos[pair.a];
-    const ShapeInfo& b = impl_->infos[pair.b];
-    const bool is_mounted = b.robot < 0 && impl_->robots[a.robot].is_mounted;
-    if ((a.robot != b.robot && !is_mounted) || !impl_->mayCollide(pair.a, pair.b))
+    const ShapeModel& model = *impl_->model;
+    const ShapeInfo& a = model.infos[pair.a];
+    const ShapeInfo& b = model.infos[pair.b];
+    const bool is_mounted = b.robot < 0 && model.robots[a.robot].is_mounted;
+    if ((a.robot != b.robot && !is_mounted) || !model.mayCollide(pair.a, pair.b))
     {
       continue;
     }
+    const std::string names = a.link + " - " + b.link;  // the model may be another one after an edit
     impl_->collidePair(pair, 0.0);
-    const Manifold& manifold = *impl_->manifold;
+    const Manifold& manifold = impl_->manifold;
     if (std::any_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
                     [](const PairContact& point) { return point.gap < OVERLAP_GAP; }))
     {
       if (is_mounted)
       {
-        impl_->robots[a.robot].disabled_static.insert({a.frame, pair.b});
-        impl_->are_pairs_current = false;
+        impl_->edit().robots[a.robot].disabled_static.insert({a.frame, pair.b});
       }
       else
       {
         disablePair(a.robot, a.link, b.link);
       }
-      disabled.push_back(a.link + " - " + b.link);
+      disabled.push_back(names);
     }
   }
   return disabled;
@@ -263,19 +300,21 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
 
 void CollisionWorld::setPoses(int robot, const MultibodyData& data)
 {
+  const ShapeModel& model = *impl_->model;
   for (int handle : impl_->robot(robot).shapes)
   {
-    impl_->setPose(handle, data.body_pose[impl_->infos[handle].body] * impl_->instances[handle].placement);
+    impl_->setPose(handle, data.body_pose[model.infos[handle].body] * model.instances[handle].placement);
   }
 }
 
 void CollisionWorld::setBodyPose(int robot, int body, const Eigen::Isometry3d& pose)
 {
+  const ShapeModel& model = *impl_->model;
   for (int handle : impl_->robot(robot).shapes)
   {
-    if (impl_->infos[handle].body == body)
+    if (model.infos[handle].body == body)
     {
-      impl_->setPose(handle, pose * impl_->instances[handle].placement);
+      impl_->setPose(handle, pose * model.instances[handle].placement);
     }
   }
 }
@@ -287,10 +326,10 @@ const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
   for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, margin))
   {
     impl_->collidePair(pair, margin);
-    const Eigen::Isometry3d& pose = impl_->instances[pair.b].pose;
-    for (int i = 0; i < impl_->manifold->count; ++i)
+    const Eigen::Isometry3d& pose = impl_->poses[pair.b];
+    for (int i = 0; i < impl_->manifold.count; ++i)
     {
-      const PairContact& point = impl_->manifold->points[i];
+      const PairContact& point = impl_->manifold.points[i];
       impl_->contacts.push_back({makeId(pair.a, pair.b, point), pair.a, pair.b, pose * point.position,
                                  pose.linear() * point.normal, point.gap});
     }
@@ -303,21 +342,26 @@ double CollisionWorld::lowestPoint(int robot) const
   double lowest = std::numeric_limits<double>::infinity();
   for (int handle : impl_->robot(robot).shapes)
   {
-    const Instance& instance = impl_->instances[handle];
-    const Eigen::Vector3d up = instance.pose.linear().row(2).transpose();
-    lowest = std::min(lowest, instance.pose.translation().z() + lowestAlong(instance.shape, up));
+    const Eigen::Isometry3d& pose = impl_->poses[handle];
+    const Eigen::Vector3d up = pose.linear().row(2).transpose();
+    lowest = std::min(lowest, pose.translation().z() + lowestAlong(convexShape(handle), up));
   }
   return lowest;
 }
 
 int CollisionWorld::shapeCount() const
 {
-  return static_cast<int>(impl_->instances.size());
+  return static_cast<int>(impl_->poses.size());
 }
 
 const ShapeInfo& CollisionWorld::shape(int handle) const
 {
-  return impl_->infos.at(handle);
+  return impl_->model->infos.at(handle);
+}
+
+const ConvexShape& CollisionWorld::convexShape(int handle) const
+{
+  return impl_->model->instances.at(handle).shape;
 }
 
 }  // namespace frictional_contact_sim

@@ -41,15 +41,25 @@ struct ShapeInfo
   int robot = -1;  ///< index from addRobot; -1 for static shapes
   int body = -1;  ///< body in the robot's model; -1 for static shapes
   int frame = -1;  ///< URDF link in the robot's model
+  int index = -1;  ///< in the robot's model.shapes; -1 for static shapes
   std::string link;  ///< URDF link name ("ground" for the plane)
   std::string name;  ///< collision name
 };
 
+struct ConvexShape;
+
+/**
+ * @brief Copies share what poses do not change (shapes with their hulls, tables, allowed pairs) and have poses and
+ * workspace of their own, so each may be used in a thread of its own once it is loaded. A copy that is loaded further
+ * gets shapes of its own.
+ */
 class CollisionWorld
 {
 public:
   CollisionWorld();
   ~CollisionWorld();
+  CollisionWorld(const CollisionWorld& other);
+  CollisionWorld& operator=(const CollisionWorld& other);
   CollisionWorld(CollisionWorld&&) noexcept;
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
@@ -90,6 +100,7 @@ public:
 
   int shapeCount() const;
   const ShapeInfo& shape(int handle) const;
+  const ConvexShape& convexShape(int handle) const;
 
 private:
   struct Impl;
