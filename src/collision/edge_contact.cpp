@@ -156,6 +156,10 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
     const LineParameters closest = closestOnSegments(a, b);
     addNearest(pair, a, closest.s, b, closest.t, side);
   }
+  if (pair.manifold.count == first)
+  {
+    return;  // the closest point is beyond the margin
+  }
   // the closest point may be one of the ends
   const Eigen::Vector3d last = pair.manifold.points[pair.manifold.count - 1].position;
   for (int k = first; k < pair.manifold.count - 1; ++k)

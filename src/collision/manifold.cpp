@@ -25,7 +25,7 @@ void Manifold::reserve(std::size_t vertices)
 
 void sortManifold(Manifold& manifold)
 {
-  const auto key = [](const PairContact& point) { return (point.feature_a << 16) | point.feature_b; };
+  const auto key = [](const PairContact& point) { return std::make_pair(point.feature_a, point.feature_b); };
   for (int i = 1; i < manifold.count; ++i)
   {
     for (int k = i; k > 0 && key(manifold.points[k]) < key(manifold.points[k - 1]); --k)

@@ -245,7 +245,7 @@ TEST_P(AllPairsTest, FeaturesOfAPairAreUniqueAndAtMostEightPoints)
     ASSERT_LE(points.size(), static_cast<std::size_t>(MAX_PAIR_POINTS));
     for (std::size_t i = 1; i < points.size(); ++i)
     {
-      const auto key = [](const PairContact& point) { return (point.feature_a << 16) | point.feature_b; };
+      const auto key = [](const PairContact& point) { return std::make_pair(point.feature_a, point.feature_b); };
       EXPECT_LT(key(points[i - 1]), key(points[i])) << k;
     }
   }

@@ -131,7 +131,7 @@ TEST(ConversionsTest, OdometryOfAConveyorHasItsPrescribedMotion)
   nav_msgs::Odometry message;
   fillOdometry(simulator, makeNameTable(simulator), 0, ros::Time(1, 0), message);
   // World x is -y of a box turned by +90 degrees, and by 0.0002 in the step; round-off beside that.
-  EXPECT_NEAR(message.twist.twist.linear.x, 0.1 * std::sin(0.0002), 1e-15);
+  EXPECT_NEAR(message.twist.twist.linear.x, -0.1 * std::sin(0.0002), 1e-15);
   EXPECT_NEAR(message.twist.twist.linear.y, -0.1 * std::cos(0.0002), 1e-15);
   EXPECT_NEAR(message.twist.twist.angular.z, 0.2, 1e-15);
   EXPECT_NEAR(message.pose.pose.position.x, 0.0001, 1e-15);
