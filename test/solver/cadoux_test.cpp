@@ -268,7 +268,7 @@ TEST(InteriorPointTest, ReachesTenDigitsOnRedundantContacts)
 
 TEST(OuterLoopsTest, AnInnerProblemIsNeverAskedForMoreThanATenthOfALooseTolerance)
 {
-  const VectorXd step_lengths;
+  const Eigen::VectorXd step_lengths;
   SolveContext context{step_lengths};
   SolverResult result;
   const OuterLoop loop(context, result);  // whose last residual counts as 1
