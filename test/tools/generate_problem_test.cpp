@@ -96,7 +96,7 @@ TEST_F(GenerateProblemTest, AHistoryThatCannotBeWrittenIsOneLine)
   fs::copy(file("a.hdf5"), file("other/a.hdf5"));
   const auto refused = [&](const std::string& arguments, const char* part)
   {
-    const CommandResult result = runTool("compare_solvers", file("a.hdf5") + " --solvers portfolio " + arguments);
+    const CommandResult result = runTool("compare_solvers", file("a.hdf5") + " " + arguments + " --solvers portfolio");
     EXPECT_EQ(result.code, 2) << arguments;
     EXPECT_EQ(lines(result.errors), 1) << result.errors;
     EXPECT_THAT(result.errors, HasSubstr(part));

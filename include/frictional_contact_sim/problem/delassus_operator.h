@@ -5,11 +5,12 @@
  * large, or only its half Z. No virtual call; the inner products are inline.
  *
  * Rows are grouped in blocks of 1, 2 or 3, one block a law, in the order of the laws.
- *   dense    all rows, contiguous (row-major), so that a block's product is D dot products;
- *   sparse   a block row stores the columns it touches and, column by column, its D values:  sum over touched columns.
- *   matrix-free   W = Z Z^T is never formed: Z = H C^-T (M = C C^T) in block rows and the diagonal blocks W_ii are
- * kept; a product is Z (Z^T x). Only apply(), applyTransposed() and diagonalBlock() work. W need not be exactly
- * symmetric (measured problems are not); nothing here assumes it.
+ *   dense        all rows, contiguous (row-major), so that a block's product is D dot products;
+ *   sparse       a block row stores the columns it touches and, column by column, its D values;
+ *   matrix-free  W = Z Z^T is never formed: Z = H C^-T (M = C C^T) in block rows and the diagonal blocks W_ii are kept;
+ *                a product is Z (Z^T x). Only apply(), applyTransposed() and diagonalBlock() work.
+ *
+ * W need not be exactly symmetric (measured problems are not); nothing here assumes it.
  */
 #include <Eigen/Core>
 #include <string>

@@ -17,10 +17,11 @@
  * Writing: FCLib knows Coulomb contacts of one dimension only. The others are encoded exactly:
  *   COULOMB_2D among 3D contacts   second tangential row zero
  *   UNILATERAL                     mu = 0, tangential rows zero
- *   DRY_FRICTION                   mu = 1, first tangential row = the row; the normal row acts on one extra velocity a
- * of mass m with  m a + c = r_N, u_N = a:  the only solution is a = 0, r_N = c BILATERAL rows                 moved to
- * G (global) or to V, R, s (local) The extra velocities follow the others, moved rows follow those of G; a description
- * should say so (info).
+ *   DRY_FRICTION                   mu = 1, first tangential row = the row; the normal row acts on one extra
+ *                                  velocity a of mass m with  m a + c = r_N, u_N = a: only a = 0, r_N = c solves that
+ *   BILATERAL rows                 moved to G (global) or to V, R, s (local)
+ *
+ * The extra velocities follow the others, moved rows follow those of G; a description should say so (info).
  *
  * Threads may call these at the same time: HDF5 is used by one of them at a time.
  *

@@ -3,12 +3,12 @@
  * @file law.h
  * @brief Complementarity laws between a relative velocity u_i [m/s] and an impulse r_i [N s], one value type for all.
  *
- *   COULOMB_3D    3 rows (normal, tangent 1, tangent 2)   r in K_mu = { |r_T| <= mu r_N }, (u, r) in C(e, mu) (1.22)
- *   COULOMB_2D    2 rows (normal, tangent)                the same in the plane
- *   UNILATERAL    1 row                                   0 <= u  orthogonal  r >= 0       (joint limit)
- *   DRY_FRICTION  1 row                                   |r| <= c, u = 0 or r = -c u/|u|  (joint friction, bounded
- * servo) BILATERAL     1 row                                   u = 0, r free                    (rows of G in a local
- * problem)
+ *   law           rows                              set
+ *   COULOMB_3D    normal, tangent 1, tangent 2      r in K_mu = { |r_T| <= mu r_N }, (u, r) in C(e, mu) (1.22)
+ *   COULOMB_2D    normal, tangent                   the same in the plane
+ *   UNILATERAL    1: joint limit                    0 <= u  orthogonal  r >= 0
+ *   DRY_FRICTION  1: joint friction, bounded servo  |r| <= c, u = 0 or r = -c u/|u|
+ *   BILATERAL     1: row of G in a local problem    u = 0, r free
  *
  * Source: Cadoux (2009), equation (1.22) for Coulomb; Tresca's one-dimensional law for DRY_FRICTION.
  * @see problem/law_functions.h for the projections and Jacobians.
