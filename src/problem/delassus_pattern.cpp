@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "frictional_contact_sim/math/union_find.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 
 // The symbolic part of the reduction: which velocities each law touches, which laws meet, where their products go.
@@ -54,14 +54,8 @@ void DelassusReduction::findLoops(const SparseRows& G)
   if (rows == 0)
     return;
   // Rows that share a velocity are joined: union-find through the first row that touched it.
-  std::vector<int> parent(static_cast<std::size_t>(rows));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int k)
-  {
-    while (parent[static_cast<std::size_t>(k)] != k)
-      k = parent[static_cast<std::size_t>(k)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(k)])];
-    return k;
-  };
+  UnionFind sets;
+  sets.reset(rows);
   std::vector<int> toucher(flags_.size(), -1);
   std::fill(flags_.begin(), flags_.end(), -1);
   for (int row = 0; row < rows; ++row)
@@ -73,14 +67,13 @@ void DelassusReduction::findLoops(const SparseRows& G)
       int& first = toucher[static_cast<std::size_t>(velocity)];
       if (first < 0)
         first = row;
-      const int a = root(first), b = root(row);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      sets.unite(first, row);
     }
   }
   std::vector<int> index(static_cast<std::size_t>(rows), -1);
   for (int row = 0; row < rows; ++row)
   {
-    int& loop = index[static_cast<std::size_t>(root(row))];
+    int& loop = index[static_cast<std::size_t>(sets.root(row))];
     if (loop < 0)
     {
       loop = static_cast<int>(loops_.size());
@@ -92,7 +85,7 @@ void DelassusReduction::findLoops(const SparseRows& G)
   for (std::size_t velocity = 0; velocity < toucher.size(); ++velocity)
     if (toucher[velocity] >= 0)
     {
-      loop_of_[velocity] = index[static_cast<std::size_t>(root(toucher[velocity]))];
+      loop_of_[velocity] = index[static_cast<std::size_t>(sets.root(toucher[velocity]))];
       loops_[static_cast<std::size_t>(loop_of_[velocity])].velocities.push_back(static_cast<int>(velocity));
     }
   Eigen::Index columns = 0, largest_rank = 0;

@@ -11,14 +11,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Below any velocity that matters; keeps 0/0 away when everything is at rest without loads [m/s].
-constexpr double VELOCITY_FLOOR = 1e-12;
-
-double maxAbs(const Eigen::VectorXd& x)
-{
-  return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
-}
-
 double blockEigenvalue(const DelassusOperator& W, int block)
 {
   if (W.dimension(block) == 3)

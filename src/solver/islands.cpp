@@ -5,27 +5,6 @@
 
 namespace frictional_contact_sim
 {
-int Islands::root(int i)
-{
-  auto k = static_cast<std::size_t>(i);
-  while (parent_[k] != static_cast<int>(k))
-  {
-    parent_[k] = parent_[static_cast<std::size_t>(parent_[k])];
-    k = static_cast<std::size_t>(parent_[k]);
-  }
-  return static_cast<int>(k);
-}
-
-bool Islands::unite(int i, int j)
-{
-  const int a = root(i), b = root(j);
-  if (a == b)
-    return false;
-  // The smaller index is the root: the first law of an island names it.
-  parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  return true;
-}
-
 int Islands::uniteDense(const DelassusOperator& W)
 {
   const int blocks = W.blocks();
@@ -41,7 +20,7 @@ int Islands::uniteDense(const DelassusOperator& W)
       bool coupled = false;
       for (int column = W.offset(j); column < W.offset(j + 1); ++column)
         coupled = coupled || magnitude_[column] > 0.0;
-      if (coupled && unite(i, j))
+      if (coupled && sets_.unite(i, j))
         --count;
     }
   }
@@ -61,7 +40,7 @@ int Islands::uniteSparse(const DelassusOperator& W)
                  for (int a = 0; a < W.dimension(i); ++a)
                    if (value[a * stride] != 0.0)
                    {
-                     count -= unite(i, j) ? 1 : 0;
+                     count -= sets_.unite(i, j) ? 1 : 0;
                      return;
                    }
                });
@@ -78,7 +57,7 @@ int Islands::uniteMatrixFree(const DelassusOperator& W)
                    {
                      int& toucher = toucher_[static_cast<std::size_t>(column)];
                      if (toucher >= 0)
-                       count -= unite(i, toucher) ? 1 : 0;
+                       count -= sets_.unite(i, toucher) ? 1 : 0;
                      toucher = i;
                    });
   return count;
@@ -88,8 +67,7 @@ int Islands::find(const DelassusOperator& W)
 {
   const int blocks = W.blocks();
   order_.clear();
-  parent_.resize(static_cast<std::size_t>(blocks));
-  std::iota(parent_.begin(), parent_.end(), 0);
+  sets_.reset(blocks);
   const int count = W.isDense() ? uniteDense(W) : W.isMatrixFree() ? uniteMatrixFree(W) : uniteSparse(W);
   if (count <= 1)
     return count;
@@ -100,7 +78,7 @@ int Islands::find(const DelassusOperator& W)
   int next = 0;
   for (int i = 0; i < blocks; ++i)
   {
-    const int first = root(i);
+    const int first = sets_.root(i);
     const int k = first == i ? next++ : island_[static_cast<std::size_t>(first)];
     island_[static_cast<std::size_t>(i)] = k;
     ++begin_[static_cast<std::size_t>(k) + 1];

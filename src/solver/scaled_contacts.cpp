@@ -11,9 +11,8 @@ namespace
 /// Below this share of the block's largest eigenvalue a diagonal entry counts as zero.
 constexpr double ZERO_DIAGONAL = 1e-14;
 
-/// rho_N and rho_T of a Coulomb law.
 template <int D>
-void directionLengths(const DelassusOperator& W, int i, double rho, double& normal, double& tangential)
+void contactLengths(const DelassusOperator& W, int i, double rho, double& normal, double& tangential)
 {
   const SquareMatrix<D> block = W.diagonalBlock<D>(i);
   const double tangent = largestEigenvalue(SquareMatrix<D - 1>(block.template bottomRightCorner<D - 1, D - 1>()));
@@ -21,6 +20,16 @@ void directionLengths(const DelassusOperator& W, int i, double rho, double& norm
   tangential = tangent * rho > ZERO_DIAGONAL ? 1.0 / tangent : rho;
 }
 }  // namespace
+
+void directionLengths(const DelassusOperator& W, int law, double rho, double& normal, double& tangential)
+{
+  if (W.dimension(law) == 3)
+    contactLengths<3>(W, law, rho, normal, tangential);
+  else if (W.dimension(law) == 2)
+    contactLengths<2>(W, law, rho, normal, tangential);
+  else
+    normal = tangential = rho;
+}
 
 void ScaledContacts::set(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, Metric metric)
 {
@@ -32,10 +41,8 @@ void ScaledContacts::set(const DelassusProblem& problem, const Eigen::VectorXd& 
   {
     Law& law = laws_[static_cast<std::size_t>(i)];
     double normal = step_lengths[i], tangential = step_lengths[i];
-    if (metric == Metric::DIRECTION && law.type == LawType::COULOMB_3D)
-      directionLengths<3>(problem.W, i, step_lengths[i], normal, tangential);
-    else if (metric == Metric::DIRECTION && law.type == LawType::COULOMB_2D)
-      directionLengths<2>(problem.W, i, step_lengths[i], normal, tangential);
+    if (metric == Metric::DIRECTION)
+      directionLengths(problem.W, i, step_lengths[i], normal, tangential);
     root_.segment(offset(i), law.dimension()).setConstant(std::sqrt(tangential));
     root_[offset(i)] = std::sqrt(normal);
     if (law.isCoulomb())

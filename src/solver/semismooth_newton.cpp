@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "frictional_contact_sim/problem/law_functions.h"
+#include "frictional_contact_sim/solver/scaled_contacts.h"
 #include "options_check.h"
 
 namespace frictional_contact_sim
@@ -17,8 +18,6 @@ constexpr double INNER_SHARE = 0.1;
 constexpr double MOVE_SHARE = 0.1;
 /// Up to this many rows the first step of a call is taken without a look at the clock, which costs up to a tenth of it.
 constexpr int QUICK_ROWS = 30;
-/// Relative size of the diagonal below which a W_NN counts as zero and rho falls back to the law's rho_i.
-constexpr double ZERO_DIAGONAL = 1e-14;
 
 template <int D>
 void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_r)
@@ -86,21 +85,7 @@ void SemismoothNewton::prepare(const DelassusProblem& problem, const SolveContex
   for (int i = 0; i < count; ++i)
   {
     const double rho = context.step_lengths[i];
-    double normal = 0.0, tangential = 0.0;
-    if (problem.W.dimension(i) == 3)
-    {
-      const SquareMatrix<3> W = problem.W.diagonalBlock<3>(i);
-      normal = W(0, 0);
-      tangential = largestEigenvalue(SquareMatrix<2>(W.bottomRightCorner<2, 2>()));
-    }
-    else if (problem.W.dimension(i) == 2)
-    {
-      const SquareMatrix<2> W = problem.W.diagonalBlock<2>(i);
-      normal = W(0, 0);
-      tangential = W(1, 1);
-    }
-    rho_normal_[i] = normal * rho > ZERO_DIAGONAL ? 1.0 / normal : rho;
-    rho_tangential_[i] = tangential * rho > ZERO_DIAGONAL ? 1.0 / tangential : rho;
+    directionLengths(problem.W, i, rho, rho_normal_[i], rho_tangential_[i]);
     weight_.segment(problem.W.offset(i), problem.W.dimension(i)).setConstant(1.0 / rho);
   }
 }

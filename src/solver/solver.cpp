@@ -13,15 +13,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// As in problem/residual.h [m/s].
-constexpr double VELOCITY_FLOOR = 1e-12;
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.
 constexpr int REFINEMENTS = 3;
-
-double maxAbs(const Eigen::VectorXd& x)
-{
-  return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
-}
 
 /** A bound on max_i |e_i| at r = 0, u = q [m/s]; the projections involved do not lengthen. */
 double restingError(const DelassusProblem& problem)

@@ -30,6 +30,15 @@
 
 namespace frictional_contact_sim
 {
+/// Below any velocity that matters; keeps 0/0 away when everything is at rest without loads [m/s].
+constexpr double VELOCITY_FLOOR = 1e-12;
+
+/** @brief Largest magnitude, 0 of nothing. */
+inline double maxAbs(const Eigen::VectorXd& x)
+{
+  return x.size() == 0 ? 0.0 : x.lpNorm<Eigen::Infinity>();
+}
+
 /** @brief rho_i of every law, as defined above; resized. */
 void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_lengths);
 void computeStepLengths(const DelassusOperator& W, Eigen::VectorXd& step_lengths);

@@ -6,10 +6,11 @@
  * island's r.
  *
  * Laws are joined by union-find, stopped as soon as one component is left: a W whose first block row couples everything
- * costs one look at each of its blocks. Source: Tarjan (1975), union by root with path halving; any textbook.
+ * costs one look at each of its blocks.
  */
 #include <vector>
 
+#include "frictional_contact_sim/math/union_find.h"
 #include "frictional_contact_sim/problem/delassus_operator.h"
 
 namespace frictional_contact_sim
@@ -28,14 +29,11 @@ public:
   int rows(int k) const { return rows_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])]; }
 
 private:
-  int root(int i);
   int uniteDense(const DelassusOperator& W);
   int uniteSparse(const DelassusOperator& W);
   int uniteMatrixFree(const DelassusOperator& W);
-  /** @brief Joins i and j. @return whether they were apart. */
-  bool unite(int i, int j);
 
-  std::vector<int> parent_;
+  UnionFind sets_;  ///< of laws; the first law of an island names it
   std::vector<int> toucher_;  ///< matrix-free: a law that touches the column of Z, or -1
   Eigen::RowVectorXd magnitude_;  ///< dense: largest entry of a block row in each column
   std::vector<int> island_;  ///< of a law

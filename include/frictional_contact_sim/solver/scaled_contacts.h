@@ -19,6 +19,9 @@
 
 namespace frictional_contact_sim
 {
+/** @brief rho_N and rho_T as above of a law; rho_i, given as rho, where W has none and for one-dimensional laws. */
+void directionLengths(const DelassusOperator& W, int law, double rho, double& normal, double& tangential);
+
 class ScaledContacts
 {
 public:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "frictional_contact_sim/problem/residual.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -17,7 +19,7 @@ bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const
   double size = 0.0;
   for (int i = 0; i < problem.W->blocks(); ++i)
     size = std::max(size, r.segment(problem.W->offset(i), problem.W->dimension(i)).norm() / problem.step_lengths[i]);
-  const double speed = std::max(problem.c.lpNorm<Eigen::Infinity>(), 1e-12);
+  const double speed = std::max(problem.c.lpNorm<Eigen::Infinity>(), VELOCITY_FLOOR);
   return size > RECESSION_SIZE * speed && (u - problem.c).lpNorm<Eigen::Infinity>() < RECESSION_SLOPE * size &&
          problem.c.dot(r) <= RECESSION_SLOPE * problem.c.norm() * r.norm();
 }
@@ -25,7 +27,7 @@ bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const
 double velocityScale(const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& r,
                      const Eigen::VectorXd& step_lengths, const DelassusOperator& W)
 {
-  double scale = std::max({q.lpNorm<Eigen::Infinity>(), u.lpNorm<Eigen::Infinity>(), 1e-12});
+  double scale = std::max({q.lpNorm<Eigen::Infinity>(), u.lpNorm<Eigen::Infinity>(), VELOCITY_FLOOR});
   for (int i = 0; i < W.blocks(); ++i)
     scale = std::max(scale, r.segment(W.offset(i), W.dimension(i)).norm() / step_lengths[i]);
   return scale;
