@@ -38,6 +38,19 @@ int findSingleJoint(const BodyModel& model, const std::string& name, const std::
   return joint;
 }
 
+/** Start of a mimic joint from the one it follows, that one first: chains may stand in any order (circles are refused).
+ */
+void followMimic(const Draft& body, int index)
+{
+  const Joint& joint = body.model.tree.joints[index];
+  if (joint.mimic.joint < 0)
+    return;
+  followMimic(body, joint.mimic.joint);
+  const Joint& followed = body.model.tree.joints[joint.mimic.joint];
+  body.state.q[joint.q_index] = joint.mimic.multiplier * body.state.q[followed.q_index] + joint.mimic.offset;
+  body.state.v[joint.v_index] = joint.mimic.multiplier * body.state.v[followed.v_index];
+}
+
 /** Joint positions: as given; else zero, or the nearest limit where zero is out of range. Mimic joints follow. */
 void setInitialJoints(const BodySpec& spec, const Draft& body, std::vector<std::string>& warnings)
 {
@@ -63,13 +76,8 @@ void setInitialJoints(const BodySpec& spec, const Draft& body, std::vector<std::
     body.state.q[joint.q_index] = init.position;
     body.state.v[joint.v_index] = init.velocity;
   }
-  for (const Joint& joint : model.tree.joints)
-    if (joint.mimic.joint >= 0)
-    {
-      const Joint& followed = model.tree.joints[joint.mimic.joint];
-      body.state.q[joint.q_index] = joint.mimic.multiplier * body.state.q[followed.q_index] + joint.mimic.offset;
-      body.state.v[joint.v_index] = joint.mimic.multiplier * body.state.v[followed.v_index];
-    }
+  for (size_t j = 0; j < model.tree.joints.size(); ++j)
+    followMimic(body, static_cast<int>(j));
 }
 
 void setBasePose(const Draft& body, const Eigen::Isometry3d& pose)

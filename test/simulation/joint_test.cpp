@@ -1,6 +1,7 @@
 // Joints: limits, damping, dry friction, servos and their effort limits, mimic.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -238,6 +239,47 @@ TEST(MimicTest, FollowerKeepsItsRatioUnderLoad)
   EXPECT_NEAR(simulator.velocity(0)[0], 2.6 / 13.0, 1e-12);
   EXPECT_NEAR(simulator.position(0)[1], -2.0 * simulator.position(0)[0] + 0.1, 1e-12);
   EXPECT_LT(simulator.report().bilateral_violation, 1e-12);
+}
+/** Four joints in a chain of mimics, in every order of the file: all start on the constraint, whatever comes first. */
+TEST(MimicTest, ChainsStartClosedWhateverTheOrderInTheFile)
+{
+  // a = 0.5 given; b = 2 a + 0.1, c = -b + 0.2, d = 0.5 c
+  const std::vector<std::string> mimics = {"", "<mimic joint='a' multiplier='2' offset='0.1'/>",
+                                           "<mimic joint='b' multiplier='-1' offset='0.2'/>",
+                                           "<mimic joint='c' multiplier='0.5'/>"};
+  const std::string names = "abcd";
+  const double expected[4] = {0.5, 1.1, -0.9, -0.45};
+  std::vector<int> order = {0, 1, 2, 3};
+  do
+  {
+    std::string urdf = "<robot name='fan'><link name='world'/>";
+    for (const int j : order)
+    {
+      const std::string name(1, names[j]);
+      urdf += "<link name='link_" + name +
+              "'><inertial><mass value='1'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>"
+              "</link><joint name='" +
+              name + "' type='continuous'><parent link='world'/><child link='link_" + name + "'/><axis xyz='0 0 1'/>" +
+              mimics[j] + "</joint>";
+    }
+    Scenario scene = groundScene(0.5);
+    scene.ground.reset();
+    scene.bodies.emplace_back();
+    scene.bodies[0].name = "fan";
+    scene.bodies[0].urdf_xml = urdf + "</robot>";
+    scene.bodies[0].joints["a"] = {0.5, 0.3};
+    Simulator simulator(scene);
+    const double rates[4] = {0.3, 0.6, -0.6, -0.3};
+    for (int j = 0; j < 4; ++j)
+    {
+      const Joint& joint = simulator.model(0).joints[simulator.model(0).findJoint(std::string(1, names[j]))];
+      EXPECT_NEAR(simulator.position(0)[joint.q_index], expected[j], 1e-15);
+      EXPECT_NEAR(simulator.velocity(0)[joint.v_index], rates[j], 1e-14);
+    }
+    for (int i = 0; i < 100; ++i)
+      simulator.step();
+    EXPECT_LT(simulator.report().bilateral_violation, 1e-12);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 }  // namespace
 }  // namespace frictional_contact_sim
