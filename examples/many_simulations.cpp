@@ -33,7 +33,7 @@ std::string simulate(const std::shared_ptr<const fcs::WorldModel>& world, int nu
     if (const fcs::StepOutcome& outcome = simulator.step(); !outcome.converged())
       std::fprintf(stderr, "simulation %d, step %d: %s\n", number, step, outcome.message.c_str());
   char line[160];
-  const Eigen::Vector3d end = simulator.data(body).body_pose.front().translation();
+  const Eigen::Vector3d end = simulator.data(body).link_pose.front().translation();
   std::snprintf(line, sizeof line, "%d %016llx %s at (%.6f, %.6f, %.6f)", number,
                 static_cast<unsigned long long>(simulator.stateHash()), simulator.bodyName(body).c_str(), end.x(),
                 end.y(), end.z());

@@ -48,7 +48,7 @@ std::vector<std::string> collectFiles(const std::vector<std::string>& paths)
       files.push_back(path);
       continue;
     }
-    const std::size_t first = files.size();
+    const size_t first = files.size();
     for (const auto& entry : std::filesystem::directory_iterator(path))
       if (entry.path().extension() == ".hdf5")
         files.push_back(entry.path().string());
@@ -112,7 +112,7 @@ void run(Arguments& arguments)
     ratios.emplace_back(target, arguments.solvers.front() == "ours" ? "portfolio" : arguments.solvers.front());
   {
     tools::ProgressBar bar(static_cast<long>(files.size()));
-    for (std::size_t f = 0; f < files.size(); ++f)
+    for (size_t f = 0; f < files.size(); ++f)
     {
       FclibProblem problem;
       try
@@ -130,7 +130,7 @@ void run(Arguments& arguments)
       const auto table =
           measure(local, makeEntries(local, arguments), arguments.measure,
                   [&](const std::string& text) { bar.update(static_cast<long>(f), facts.name + ": " + text); });
-      for (std::size_t t = 0; t < table.size(); ++t)
+      for (size_t t = 0; t < table.size(); ++t)
       {
         for (const Outcome& outcome : table[t])
           csv.add(facts, arguments.measure.targets[t], outcome);

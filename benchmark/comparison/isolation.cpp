@@ -23,7 +23,7 @@ namespace
 constexpr int DONE = 77;  ///< exit code of a child that came to its end; exit() inside a library gives another
 }  // namespace
 
-SharedMemory::SharedMemory(std::size_t bytes)
+SharedMemory::SharedMemory(size_t bytes)
   : data_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)), bytes_(bytes)
 {
   if (data_ == MAP_FAILED)

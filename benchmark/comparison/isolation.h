@@ -20,7 +20,7 @@ enum class Ending
 class SharedMemory
 {
 public:
-  explicit SharedMemory(std::size_t bytes);
+  explicit SharedMemory(size_t bytes);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;
   SharedMemory& operator=(const SharedMemory&) = delete;
@@ -32,7 +32,7 @@ public:
 
 private:
   void* data_;
-  std::size_t bytes_;
+  size_t bytes_;
 };
 
 /** @brief Runs work in a child with its output silenced, and waits. */

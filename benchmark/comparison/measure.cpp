@@ -66,7 +66,7 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
 {
   const std::unique_ptr<Contestant> contestant = entry.make();
   double tolerance = 1.0;
-  for (std::size_t t = 0; t < options.targets.size(); ++t)
+  for (size_t t = 0; t < options.targets.size(); ++t)
   {
     const Target& target = options.targets[t];
     Finding& finding = findings[t];
@@ -105,13 +105,13 @@ void search(const DelassusProblem& problem, const Entry& entry, const MeasureOpt
 bool searchVariant(const DelassusProblem& problem, const Entry& entry, const MeasureOptions& options, double limit,
                    std::vector<Outcome*>& outcomes)
 {
-  const std::size_t targets = options.targets.size();
+  const size_t targets = options.targets.size();
   SharedMemory memory(targets * sizeof(Finding));
   auto* findings = memory.as<Finding>();
   if (outcomes.back()->solved())
     limit = std::min(limit, 2.0 * outcomes.back()->seconds + 0.02);
   const Ending ending = runIsolated([&] { search(problem, entry, options, limit, findings); });
-  for (std::size_t t = 0; t < targets; ++t)
+  for (size_t t = 0; t < targets; ++t)
   {
     const Finding& finding = findings[t];
     Outcome& outcome = *outcomes[t];
@@ -175,7 +175,7 @@ void sampleRounds(std::vector<Runner>& runners, const MeasureOptions& options)
 }
 
 /** Whether an outcome, or one as quick as the search can tell, stands in the table of ratios. */
-bool compared(const std::vector<Outcome>& outcomes, std::size_t k)
+bool compared(const std::vector<Outcome>& outcomes, size_t k)
 {
   double quickest = std::numeric_limits<double>::infinity();
   for (const Outcome& outcome : outcomes)
@@ -187,14 +187,14 @@ bool compared(const std::vector<Outcome>& outcomes, std::size_t k)
 double median(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
+  const size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 /** Times all solvers that met one target, in turn in one child process. */
 void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options, std::vector<Outcome>& outcomes)
 {
-  const auto stride = static_cast<std::size_t>(options.samples);
+  const auto stride = static_cast<size_t>(options.samples);
   SharedMemory time_memory(outcomes.size() * stride * sizeof(double)), count_memory(outcomes.size() * sizeof(int));
   auto* times = time_memory.as<double>();
   auto* counts = count_memory.as<int>();
@@ -202,7 +202,7 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
       [&]
       {
         std::vector<Runner> runners;
-        for (std::size_t k = 0; k < outcomes.size(); ++k)
+        for (size_t k = 0; k < outcomes.size(); ++k)
           if (outcomes[k].solved())
           {
             Runner runner;
@@ -218,7 +218,7 @@ void timeTarget(const std::vector<Entry>& entries, const MeasureOptions& options
           }
         sampleRounds(runners, options);
       });
-  for (std::size_t k = 0; k < outcomes.size(); ++k)
+  for (size_t k = 0; k < outcomes.size(); ++k)
     if (counts[k] > 0)
     {
       outcomes[k].samples = counts[k];
@@ -237,7 +237,7 @@ std::vector<std::vector<Outcome>> measure(const DelassusProblem& problem, const 
       solvers.push_back(entry.solver);
   std::vector<std::vector<Outcome>> table(options.targets.size(), std::vector<Outcome>(solvers.size()));
   double limit = options.time_limit;
-  for (std::size_t s = 0; s < solvers.size(); ++s)
+  for (size_t s = 0; s < solvers.size(); ++s)
   {
     std::vector<Outcome*> outcomes;
     for (auto& row : table)
@@ -259,7 +259,7 @@ std::vector<std::vector<Outcome>> measure(const DelassusProblem& problem, const 
     if (s == 0 && options.give_up_factor > 0.0 && outcomes.back()->solved())
       limit = std::clamp(options.give_up_factor * outcomes.back()->seconds, std::min(LEAST_LIMIT, limit), limit);
   }
-  for (std::size_t t = 0; t < table.size(); ++t)
+  for (size_t t = 0; t < table.size(); ++t)
   {
     progress("timing at " + options.targets[t].label());
     timeTarget(entries, options, table[t]);

@@ -41,7 +41,7 @@ void lightError(SolverOptions& options)
 }
 void moreInnerIterations(SolverOptions& options)
 {
-  for (std::size_t k = 0; k < options.numberOfInternalSolvers; ++k)
+  for (size_t k = 0; k < options.numberOfInternalSolvers; ++k)
     if (options.internalSolvers[k] != nullptr)
       options.internalSolvers[k]->iparam[SICONOS_IPARAM_MAX_ITER] = 100000;
 }
@@ -128,7 +128,7 @@ private:
   std::vector<double> mu_;
   FrictionContactProblem* problem_ = nullptr;  ///< lives as long as the child process
   std::vector<SolverOptions*> options_;
-  std::size_t next_ = 0;
+  size_t next_ = 0;
 };
 }  // namespace
 

@@ -14,28 +14,28 @@ namespace
 using frictional_contact_sim::DelassusOperator;
 
 template <typename Value>
-Value* allocate(std::size_t count)
+Value* allocate(size_t count)
 {
-  return static_cast<Value*>(std::calloc(std::max<std::size_t>(count, 1), sizeof(Value)));
+  return static_cast<Value*>(std::calloc(std::max<size_t>(count, 1), sizeof(Value)));
 }
 
 /** All non-zero blocks and the diagonal ones, row by row, each in Fortran order. */
 SparseBlockStructuredMatrix* makeBlocks(const DelassusOperator& W)
 {
   const Eigen::MatrixXd dense = W.toDense();
-  const auto blocks = static_cast<std::size_t>(W.blocks());
+  const auto blocks = static_cast<size_t>(W.blocks());
   SparseBlockStructuredMatrix* matrix = SBM_new();
   matrix->blocknumber0 = matrix->blocknumber1 = static_cast<unsigned>(blocks);
   matrix->blocksize0 = allocate<unsigned>(blocks);
   matrix->blocksize1 = allocate<unsigned>(blocks);
   matrix->filled1 = blocks + 1;
-  matrix->index1_data = allocate<std::size_t>(blocks + 1);
+  matrix->index1_data = allocate<size_t>(blocks + 1);
   matrix->diagonal_blocks = allocate<unsigned>(blocks);
   std::vector<double*> values;
-  std::vector<std::size_t> columns;
+  std::vector<size_t> columns;
   for (int i = 0; i < W.blocks(); ++i)
   {
-    const auto row = static_cast<std::size_t>(i);
+    const auto row = static_cast<size_t>(i);
     matrix->blocksize0[row] = matrix->blocksize1[row] = static_cast<unsigned>(W.offset(i) + W.dimension(i));
     for (int j = 0; j < W.blocks(); ++j)
     {
@@ -44,16 +44,16 @@ SparseBlockStructuredMatrix* makeBlocks(const DelassusOperator& W)
         continue;
       if (i == j)
         matrix->diagonal_blocks[row] = static_cast<unsigned>(values.size());
-      values.push_back(allocate<double>(static_cast<std::size_t>(block.size())));
+      values.push_back(allocate<double>(static_cast<size_t>(block.size())));
       Eigen::Map<Eigen::MatrixXd>(values.back(), block.rows(), block.cols()) = block;
-      columns.push_back(static_cast<std::size_t>(j));
+      columns.push_back(static_cast<size_t>(j));
     }
     matrix->index1_data[row + 1] = values.size();
   }
   matrix->nbblocks = static_cast<unsigned>(values.size());
   matrix->filled2 = values.size();
   matrix->block = allocate<double*>(values.size());
-  matrix->index2_data = allocate<std::size_t>(values.size());
+  matrix->index2_data = allocate<size_t>(values.size());
   std::copy(values.begin(), values.end(), matrix->block);
   std::copy(columns.begin(), columns.end(), matrix->index2_data);
   return matrix;
@@ -82,7 +82,7 @@ NumericsMatrix* copyToSiconos(const DelassusOperator& W, Storage storage)
   const Eigen::MatrixXd dense = W.toDense();
   if (storage == Storage::DENSE)
   {
-    auto* values = allocate<double>(static_cast<std::size_t>(dense.size()));
+    auto* values = allocate<double>(static_cast<size_t>(dense.size()));
     std::copy(dense.data(), dense.data() + dense.size(), values);
     return NM_create_from_data(NM_DENSE, n, n, values);
   }

@@ -13,7 +13,7 @@ namespace
 {
 // Measured: a listed pair takes about 2 ns, and updating FCL's tree about 1 us for every moving body: the list is
 // faster up to some 300 free bodies.
-constexpr std::size_t MAX_LISTED = 50000;
+constexpr size_t MAX_LISTED = 50000;
 
 bool isHalfSpace(const Bounds& bounds)
 {
@@ -23,13 +23,9 @@ bool isHalfSpace(const Bounds& bounds)
 bool areNear(const Bounds& a, const Bounds& b, double margin)
 {
   if (isHalfSpace(b))
-  {
     return b.normal.dot(a.center - b.center) - a.radius <= margin;
-  }
   if (isHalfSpace(a))
-  {
     return a.normal.dot(b.center - a.center) - b.radius <= margin;
-  }
   const Eigen::Vector3d difference = a.center - b.center;
   const double reach = a.radius + b.radius + margin;
   return difference.squaredNorm() <= reach * reach &&
@@ -42,7 +38,7 @@ struct BroadPhase::Allowed
   std::vector<ShapePair> listed;  ///< tested one by one: all for few shapes, else those with a half space
   std::vector<char> matrix;  ///< n x n, [a n + b]; empty when all are listed
   std::vector<int> bounded;  ///< handles of the shapes in the tree
-  std::size_t shape_count = 0;
+  size_t shape_count = 0;
 };
 
 struct BroadPhase::Tree
@@ -89,22 +85,16 @@ void BroadPhase::reset(std::vector<ShapePair> pairs, const std::vector<Bounds>& 
   std::vector<ShapePair>& listed = allowed->listed;
   if (listed.size() > MAX_LISTED)
   {
-    const std::size_t n = bounds.size();
+    const size_t n = bounds.size();
     allowed->matrix.assign(n * n, 0);
     for (const ShapePair& pair : listed)
-    {
       allowed->matrix[pair.a * n + pair.b] = 1;
-    }
     const auto has_no_plane = [&](const ShapePair& pair)
     { return !isHalfSpace(bounds[pair.a]) && !isHalfSpace(bounds[pair.b]); };
     listed.erase(std::remove_if(listed.begin(), listed.end(), has_no_plane), listed.end());
-    for (std::size_t i = 0; i < n; ++i)
-    {
+    for (size_t i = 0; i < n; ++i)
       if (!isHalfSpace(bounds[i]))
-      {
         allowed->bounded.push_back(static_cast<int>(i));
-      }
-    }
   }
   allowed_ = allowed;
   prepare();
@@ -114,7 +104,7 @@ void BroadPhase::reset(std::vector<ShapePair> pairs, const std::vector<Bounds>& 
 void BroadPhase::prepare()
 {
   tree_ = allowed_->matrix.empty() ? nullptr : std::make_unique<Tree>(allowed_->bounded);
-  const std::size_t room = 16 * allowed_->shape_count;
+  const size_t room = 16 * allowed_->shape_count;
   candidates_.clear();
   candidates_.reserve(std::min(allowed_->listed.size(), room) + room);
 }
@@ -123,17 +113,11 @@ const std::vector<ShapePair>& BroadPhase::candidates(const std::vector<Bounds>& 
 {
   candidates_.clear();
   for (const ShapePair& pair : allowed_->listed)
-  {
     if (areNear(bounds[pair.a], bounds[pair.b], margin))
-    {
       candidates_.push_back(pair);
-    }
-  }
   if (!tree_)
-  {
     return candidates_;
-  }
-  for (std::size_t k = 0; k < tree_->objects.size(); ++k)
+  for (size_t k = 0; k < tree_->objects.size(); ++k)
   {
     // The objects stay at the identity: their local box is the world's, widened by half the margin.
     const Bounds& box = bounds[Tree::handleOf(tree_->objects[k].get())];
@@ -150,21 +134,20 @@ const std::vector<ShapePair>& BroadPhase::candidates(const std::vector<Bounds>& 
     double margin;
     std::vector<ShapePair>& found;
   } query{*allowed_, bounds, margin, candidates_};
-  tree_->manager.collide(&query,
-                         [](fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data)
-                         {
-                           Query& q = *static_cast<Query*>(data);
-                           const std::size_t n = q.allowed.shape_count;
-                           const int i = Tree::handleOf(first);
-                           const int k = Tree::handleOf(second);
-                           const bool ik = q.allowed.matrix[i * n + k] != 0;
-                           const bool ki = q.allowed.matrix[k * n + i] != 0;
-                           if ((ik || ki) && areNear(q.bounds[i], q.bounds[k], q.margin))
-                           {
-                             q.found.push_back(ik ? ShapePair{i, k} : ShapePair{k, i});
-                           }
-                           return false;
-                         });
+  tree_->manager.collide(
+      &query,
+      [](fcl::CollisionObjectd* first, fcl::CollisionObjectd* second, void* data)
+      {
+        Query& q = *static_cast<Query*>(data);
+        const size_t n = q.allowed.shape_count;
+        const int i = Tree::handleOf(first);
+        const int k = Tree::handleOf(second);
+        const bool ik = q.allowed.matrix[i * n + k] != 0;
+        const bool ki = q.allowed.matrix[k * n + i] != 0;
+        if ((ik || ki) && areNear(q.bounds[i], q.bounds[k], q.margin))
+          q.found.push_back(ik ? ShapePair{i, k} : ShapePair{k, i});
+        return false;
+      });
   std::sort(candidates_.begin(), candidates_.end(),
             [](const ShapePair& p, const ShapePair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
   return candidates_;

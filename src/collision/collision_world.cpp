@@ -19,13 +19,13 @@ constexpr double OVERLAP_GAP = -1e-9;  // [m] less is an overlap of the initial 
 struct Instance
 {
   ConvexShape shape;
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the body, or in the world for static shapes
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the link, or in the world for static shapes
   bool is_immobile = false;  ///< static, or on a fixed base
 };
 
-struct Robot
+struct CollidingBody
 {
-  std::vector<int> parent;  ///< of every body
+  std::vector<int> parent;  ///< of every link
   std::vector<int> shapes;  ///< handles
   std::vector<std::string> frame_names;
   bool is_mounted = false;  ///< on a fixed base, no floating joint
@@ -38,8 +38,8 @@ struct ShapeModel
 {
   std::vector<Instance> instances;
   std::vector<ShapeInfo> infos;
-  std::vector<Robot> robots;
-  std::size_t most_vertices = 0;
+  std::vector<CollidingBody> bodies;
+  size_t most_vertices = 0;
 
   bool mayCollide(int i, int k) const;
 };
@@ -53,25 +53,21 @@ std::uint64_t makeId(int a, int b, const PairContact& point)
 bool ShapeModel::mayCollide(int i, int k) const
 {
   if (instances[i].is_immobile && instances[k].is_immobile)
-  {
     return false;
-  }
   const ShapeInfo& first = infos[i];
   const ShapeInfo& second = infos[k];
-  if (first.robot < 0 || second.robot < 0)
+  if (first.body < 0 || second.body < 0)
   {
-    const ShapeInfo& moving = first.robot < 0 ? second : first;
-    return robots[moving.robot].disabled_static.count({moving.frame, first.robot < 0 ? i : k}) == 0;
+    const ShapeInfo& moving = first.body < 0 ? second : first;
+    return bodies[moving.body].disabled_static.count({moving.frame, first.body < 0 ? i : k}) == 0;
   }
-  if (first.robot != second.robot)
-  {
+  if (first.body != second.body)
     return true;
-  }
-  const Robot& robot = robots[first.robot];
+  const CollidingBody& body = bodies[first.body];
   const bool is_adjacent =
-      first.body == second.body || robot.parent[first.body] == second.body || robot.parent[second.body] == first.body;
+      first.link == second.link || body.parent[first.link] == second.link || body.parent[second.link] == first.link;
   return !is_adjacent &&
-         robot.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
+         body.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
 }
 }  // namespace
 
@@ -101,18 +97,14 @@ struct CollisionWorld::Impl
   {
     are_pairs_current = false;
     if (model.use_count() > 1)
-    {
       model = std::make_shared<ShapeModel>(*model);
-    }
     return const_cast<ShapeModel&>(*model);  // nobody else has it
   }
 
   int addInstance(Instance instance, ShapeInfo info)
   {
     if (model->instances.size() >= MAX_SHAPES)
-    {
       throw std::invalid_argument("collision: more than " + std::to_string(MAX_SHAPES) + " shapes");
-    }
     ShapeModel& shapes = edit();
     shapes.most_vertices = std::max(shapes.most_vertices, instance.shape.core.vertices.size());
     manifold.reserve(2 * shapes.most_vertices);
@@ -133,28 +125,20 @@ struct CollisionWorld::Impl
     box.center = pose * shape.center;
     box.half_extent = shape.half_extent;
     if (shape.kind != ShapeKind::HALF_SPACE)
-    {
       box.half_extent = pose.linear().cwiseAbs() * shape.half_extent;
-    }
   }
 
   void updatePairs()
   {
     if (are_pairs_current)
-    {
       return;
-    }
     std::vector<ShapePair> pairs;
     const int n = static_cast<int>(poses.size());
     for (int i = 0; i < n; ++i)
     {
       for (int k = i + 1; k < n; ++k)
-      {
         if (model->mayCollide(i, k))
-        {
-          pairs.push_back(model->infos[i].robot < 0 ? ShapePair{k, i} : ShapePair{i, k});
-        }
-      }
+          pairs.push_back(model->infos[i].body < 0 ? ShapePair{k, i} : ShapePair{i, k});
     }
     std::sort(pairs.begin(), pairs.end(),
               [](const ShapePair& p, const ShapePair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
@@ -169,15 +153,15 @@ struct CollisionWorld::Impl
     collide(model->instances[pair.a].shape, model->instances[pair.b].shape, a_in_b, margin, manifold);
   }
 
-  const Robot& robot(int index) const
+  const CollidingBody& body(int index) const
   {
-    const std::vector<Robot>& robots = model->robots;
-    if (index < 0 || index >= static_cast<int>(robots.size()))
+    const std::vector<CollidingBody>& bodies = model->bodies;
+    if (index < 0 || index >= static_cast<int>(bodies.size()))
     {
-      throw std::invalid_argument("collision: no robot " + std::to_string(index) + ", there are " +
-                                  std::to_string(robots.size()));
+      throw std::invalid_argument("collision: no body " + std::to_string(index) + ", there are " +
+                                  std::to_string(bodies.size()));
     }
-    return robots[index];
+    return bodies[index];
   }
 };
 
@@ -196,21 +180,17 @@ CollisionWorld& CollisionWorld::operator=(const CollisionWorld& other)
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
 CollisionWorld& CollisionWorld::operator=(CollisionWorld&&) noexcept = default;
 
-int CollisionWorld::addRobot(const MultibodyModel& model)
+int CollisionWorld::addBody(const MultibodyModel& model)
 {
-  const int index = static_cast<int>(impl_->model->robots.size());
-  Robot robot;
-  robot.is_mounted = model.joints.front().type == JointType::FIXED &&
-                     std::none_of(model.joints.begin(), model.joints.end(),
-                                  [](const Joint& joint) { return joint.type == JointType::FLOATING; });
+  const int index = static_cast<int>(impl_->model->bodies.size());
+  CollidingBody body;
+  body.is_mounted = model.joints.front().type == JointType::FIXED &&
+                    std::none_of(model.joints.begin(), model.joints.end(),
+                                 [](const Joint& joint) { return joint.type == JointType::FLOATING; });
   for (const Joint& joint : model.joints)
-  {
-    robot.parent.push_back(joint.parent);
-  }
+    body.parent.push_back(joint.parent);
   for (const Frame& frame : model.frames)
-  {
-    robot.frame_names.push_back(frame.name);
-  }
+    body.frame_names.push_back(frame.name);
   // all meshes first: when one cannot be read the world stays as it was
   std::vector<Instance> instances;
   for (const CollisionShape& shape : model.shapes)
@@ -218,19 +198,19 @@ int CollisionWorld::addRobot(const MultibodyModel& model)
     Instance instance;
     instance.shape = makeShape(shape.geometry);
     instance.placement = shape.placement;
-    const Joint& joint = model.joints[shape.body];
+    const Joint& joint = model.joints[shape.link];
     instance.is_immobile = joint.type == JointType::FIXED && joint.parent < 0;
     instances.push_back(std::move(instance));
   }
-  for (std::size_t k = 0; k < instances.size(); ++k)
+  for (size_t k = 0; k < instances.size(); ++k)
   {
     const CollisionShape& shape = model.shapes[k];
-    const int handle = impl_->addInstance(std::move(instances[k]), {index, shape.body, shape.frame, static_cast<int>(k),
-                                                                    robot.frame_names.at(shape.frame), shape.name});
-    robot.shapes.push_back(handle);
+    const int handle = impl_->addInstance(std::move(instances[k]), {index, shape.link, shape.frame, static_cast<int>(k),
+                                                                    body.frame_names.at(shape.frame), shape.name});
+    body.shapes.push_back(handle);
     impl_->setPose(handle, shape.placement);
   }
-  impl_->edit().robots.push_back(std::move(robot));
+  impl_->edit().bodies.push_back(std::move(body));
   return index;
 }
 
@@ -245,22 +225,20 @@ int CollisionWorld::addStatic(const Geometry& geometry, const Eigen::Isometry3d&
   return handle;
 }
 
-void CollisionWorld::disablePair(int robot, const std::string& link_1, const std::string& link_2)
+void CollisionWorld::disablePair(int body, const std::string& link_1, const std::string& link_2)
 {
-  const std::vector<std::string>& names = impl_->robot(robot).frame_names;
+  const std::vector<std::string>& names = impl_->body(body).frame_names;
   std::array<int, 2> frames;
   for (int k = 0; k < 2; ++k)
   {
     const std::string& link = k == 0 ? link_1 : link_2;
     const auto found = std::find(names.begin(), names.end(), link);
     if (found == names.end())
-    {
-      throw std::invalid_argument("disable_collisions: the robot has no link '" + link + "'");
-    }
+      throw std::invalid_argument("disable_collisions: the body has no link '" + link + "'");
     frames[k] = static_cast<int>(found - names.begin());
   }
   std::sort(frames.begin(), frames.end());
-  impl_->edit().robots[robot].disabled.insert(frames);
+  impl_->edit().bodies[body].disabled.insert(frames);
 }
 
 std::vector<std::string> CollisionWorld::disableOverlaps()
@@ -273,50 +251,38 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
     const ShapeModel& model = *impl_->model;
     const ShapeInfo& a = model.infos[pair.a];
     const ShapeInfo& b = model.infos[pair.b];
-    const bool is_mounted = b.robot < 0 && model.robots[a.robot].is_mounted;
-    if ((a.robot != b.robot && !is_mounted) || !model.mayCollide(pair.a, pair.b))
-    {
+    const bool is_mounted = b.body < 0 && model.bodies[a.body].is_mounted;
+    if ((a.body != b.body && !is_mounted) || !model.mayCollide(pair.a, pair.b))
       continue;
-    }
-    const std::string names = a.link + " - " + b.link;  // the model may be another one after an edit
+    const std::string names = a.link_name + " - " + b.link_name;  // the model may be another one after an edit
     impl_->collidePair(pair, 0.0);
     const Manifold& manifold = impl_->manifold;
     if (std::any_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
                     [](const PairContact& point) { return point.gap < OVERLAP_GAP; }))
     {
       if (is_mounted)
-      {
-        impl_->edit().robots[a.robot].disabled_static.insert({a.frame, pair.b});
-      }
+        impl_->edit().bodies[a.body].disabled_static.insert({a.frame, pair.b});
       else
-      {
-        disablePair(a.robot, a.link, b.link);
-      }
+        disablePair(a.body, a.link_name, b.link_name);
       disabled.push_back(names);
     }
   }
   return disabled;
 }
 
-void CollisionWorld::setPoses(int robot, const MultibodyData& data)
+void CollisionWorld::setPoses(int body, const MultibodyData& data)
 {
   const ShapeModel& model = *impl_->model;
-  for (int handle : impl_->robot(robot).shapes)
-  {
-    impl_->setPose(handle, data.body_pose[model.infos[handle].body] * model.instances[handle].placement);
-  }
+  for (int handle : impl_->body(body).shapes)
+    impl_->setPose(handle, data.link_pose[model.infos[handle].link] * model.instances[handle].placement);
 }
 
-void CollisionWorld::setBodyPose(int robot, int body, const Eigen::Isometry3d& pose)
+void CollisionWorld::setLinkPose(int body, int link, const Eigen::Isometry3d& pose)
 {
   const ShapeModel& model = *impl_->model;
-  for (int handle : impl_->robot(robot).shapes)
-  {
-    if (model.infos[handle].body == body)
-    {
+  for (int handle : impl_->body(body).shapes)
+    if (model.infos[handle].link == link)
       impl_->setPose(handle, pose * model.instances[handle].placement);
-    }
-  }
 }
 
 const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
@@ -337,10 +303,10 @@ const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
   return impl_->contacts;
 }
 
-double CollisionWorld::lowestPoint(int robot) const
+double CollisionWorld::lowestPoint(int body) const
 {
   double lowest = std::numeric_limits<double>::infinity();
-  for (int handle : impl_->robot(robot).shapes)
+  for (int handle : impl_->body(body).shapes)
   {
     const Eigen::Isometry3d& pose = impl_->poses[handle];
     const Eigen::Vector3d up = pose.linear().row(2).transpose();

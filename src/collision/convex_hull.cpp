@@ -20,7 +20,7 @@ namespace
 {
 constexpr double WELD_TOLERANCE = 1e-6;  // times the size: single-precision files
 constexpr double COPLANAR_TOLERANCE = 2e-6;  // times the size
-constexpr std::size_t MAX_VERTICES = 4000;  // feature numbers of contact ids have 14 bits: 3 V - 6 edges < 16384
+constexpr size_t MAX_VERTICES = 4000;  // feature numbers of contact ids have 14 bits: 3 V - 6 edges < 16384
 
 using Triangle = std::array<int, 3>;
 
@@ -33,9 +33,7 @@ std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, do
   {
     std::array<long, 3> cell;
     for (int i = 0; i < 3; ++i)
-    {
       cell[i] = std::lround(point[i] / tolerance);
-    }
     bool is_new = true;
     for (int k = 0; k < 27 && is_new; ++k)
     {
@@ -72,28 +70,20 @@ std::vector<Triangle> hullTriangles(std::vector<Eigen::Vector3d>& points)
   const int failed = qh_new_qhull(qh.get(), 3, static_cast<int>(points.size()), points.data()->data(), 0, options,
                                   sink.get(), sink.get());
   if (failed)
-  {
     throw std::invalid_argument("its vertices lie in one plane (no convex hull)");
-  }
   Eigen::Vector3d inside = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points)
-  {
     inside += point / static_cast<double>(points.size());
-  }
   std::vector<Triangle> triangles;
   for (facetT* facet = qh->facet_list; facet && facet->next; facet = facet->next)
   {
     Triangle triangle;
     for (int k = 0; k < 3; ++k)
-    {
       triangle[k] = qh_pointid(qh.get(), SETelemt_(facet->vertices, k, vertexT)->point);
-    }
     const Eigen::Vector3d& origin = points[triangle[0]];
     const Eigen::Vector3d normal = (points[triangle[1]] - origin).cross(points[triangle[2]] - origin);
     if (normal.dot(origin - inside) < 0.0)
-    {
       std::swap(triangle[1], triangle[2]);
-    }
     triangles.push_back(triangle);
   }
   return triangles;
@@ -112,7 +102,7 @@ std::vector<int> mergeCoplanar(const std::vector<Eigen::Vector3d>& points, const
 {
   std::vector<int> order(triangles.size());
   std::vector<double> area(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  for (size_t t = 0; t < triangles.size(); ++t)
   {
     order[t] = static_cast<int>(t);
     area[t] = areaVector(points, triangles[t]).norm();
@@ -123,9 +113,7 @@ std::vector<int> mergeCoplanar(const std::vector<Eigen::Vector3d>& points, const
   for (int seed : order)
   {
     if (face[seed] >= 0)
-    {
       continue;
-    }
     const Eigen::Vector3d normal = areaVector(points, triangles[seed]).normalized();
     const double offset = normal.dot(points[triangles[seed][0]]);
     std::vector<int> stack = {seed};
@@ -161,9 +149,7 @@ std::vector<int> faceLoop(int first, const std::map<int, int>& next, const std::
   do
   {
     if (faces_at_vertex[vertex] >= 3)
-    {
       loop.push_back(vertex);
-    }
     vertex = next.at(vertex);
   } while (vertex != first && loop.size() <= next.size());
   return loop;
@@ -173,13 +159,9 @@ Polyhedron assemble(const std::vector<Eigen::Vector3d>& points, const std::vecto
                     double tolerance)
 {
   HalfEdges half_edges;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-  {
+  for (size_t t = 0; t < triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
-    {
       half_edges[{triangles[t][k], triangles[t][(k + 1) % 3]}] = static_cast<int>(t);
-    }
-  }
   int face_count = 0;
   const std::vector<int> face = mergeCoplanar(points, triangles, half_edges, tolerance, face_count);
   std::vector<std::map<int, int>> boundary(face_count);
@@ -200,9 +182,7 @@ Polyhedron assemble(const std::vector<Eigen::Vector3d>& points, const std::vecto
   {
     std::vector<int> loop = next.empty() ? std::vector<int>() : faceLoop(next.begin()->first, next, faces_at_vertex);
     if (loop.size() < 3)
-    {
       throw std::runtime_error("faces of its convex hull degenerate");
-    }
     for (int& vertex : loop)
     {
       if (renumbered[vertex] < 0)
@@ -222,50 +202,36 @@ Polyhedron assemble(const std::vector<Eigen::Vector3d>& points, const std::vecto
 Polyhedron convexHull(const std::vector<Eigen::Vector3d>& points)
 {
   if (points.size() < 4)
-  {
     throw std::invalid_argument("it has " + std::to_string(points.size()) + " vertices, at least 4 are needed");
-  }
   Eigen::Vector3d low = points.front();
   Eigen::Vector3d high = low;
   for (const Eigen::Vector3d& point : points)
   {
     if (!point.allFinite())
-    {
       throw std::invalid_argument("a vertex is not finite");
-    }
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
   const Eigen::Vector3d center = 0.5 * (low + high);
   const double size = 0.5 * (high - low).norm();
   if (!(size > 0.0))
-  {
     throw std::invalid_argument("all its vertices are one point");
-  }
   // A fine mesh of a round part is thinned until its features fit the contact ids.
   for (double factor = 1.0; factor < 1e5; factor *= 4.0)
   {
     std::vector<Eigen::Vector3d> welded = weld(points, factor * WELD_TOLERANCE * size);
     if (welded.size() < 4)
-    {
       break;
-    }
     for (Eigen::Vector3d& point : welded)
-    {
       point -= center;  // far from the origin digits would be lost
-    }
     const std::vector<Triangle> triangles = hullTriangles(welded);
     for (Eigen::Vector3d& point : welded)
-    {
       point += center;
-    }
     try
     {
       Polyhedron hull = assemble(welded, triangles, factor * COPLANAR_TOLERANCE * size);
       if (hull.vertices.size() <= MAX_VERTICES && hull.faces.size() >= 4)
-      {
         return hull;
-      }
     }
     catch (const std::runtime_error&)
     {

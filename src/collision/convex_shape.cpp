@@ -36,9 +36,7 @@ struct ShapeMaker
   ConvexShape operator()(const Capsule& capsule) const
   {
     if (capsule.half_length == 0.0)
-    {
       return (*this)(Sphere{capsule.radius});
-    }
     requirePositive(capsule.radius, "capsule radius");
     requirePositive(capsule.half_length, "capsule half length");
     ConvexShape shape;
@@ -68,9 +66,7 @@ struct ShapeMaker
   ConvexShape operator()(const Box& box) const
   {
     for (int i = 0; i < 3; ++i)
-    {
       requirePositive(box.half_size[i], "box half size");
-    }
     return fromPolyhedron(boxPolyhedron(box.half_size), ShapeKind::BOX);
   }
 
@@ -109,18 +105,12 @@ ConvexShape makeShape(const Geometry& geometry)
 double lowestAlong(const ConvexShape& shape, const Eigen::Vector3d& n)
 {
   if (shape.kind == ShapeKind::HALF_SPACE)
-  {
     return n.z() < 0.0 && n.x() == 0.0 && n.y() == 0.0 ? 0.0 : -std::numeric_limits<double>::infinity();
-  }
   if (shape.kind == ShapeKind::CYLINDER)
-  {
     return -shape.radius * std::hypot(n.x(), n.y()) - shape.half_length * std::abs(n.z());
-  }
   double lowest = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& vertex : shape.core.vertices)
-  {
     lowest = std::min(lowest, n.dot(vertex));
-  }
   return lowest - shape.radius;
 }
 

@@ -9,7 +9,7 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double DEEP = 1e-3;  // times the size: overlap that no simulation step leaves behind
-constexpr std::size_t MAX_BRUTE_FORCE = 24;  // beyond, climbing along the edges is faster
+constexpr size_t MAX_BRUTE_FORCE = 24;  // beyond, climbing along the edges is faster
 
 int climb(const Polyhedron& core, const Eigen::Vector3d& direction)
 {
@@ -38,7 +38,7 @@ int farthestVertex(const Polyhedron& core, const Eigen::Vector3d& direction)
 {
   int best = 0;
   double reach = direction.dot(core.vertices[0]);
-  for (std::size_t v = 1; v < core.vertices.size(); ++v)
+  for (size_t v = 1; v < core.vertices.size(); ++v)
   {
     const double other = direction.dot(core.vertices[v]);
     if (other > reach)
@@ -60,9 +60,7 @@ Eigen::Vector3d cylinderPoint(const ConvexShape& shape, const Eigen::Vector3d& d
 Eigen::Vector3d transformed(const CoreView& view, const Eigen::Vector3d& point)
 {
   if (view.shrink == 1.0)
-  {
     return view.rotation * point + view.translation;
-  }
   const Eigen::Vector3d& interior = view.shape->core.interior;
   return view.rotation * (interior + view.shrink * (point - interior)) + view.translation;
 }
@@ -91,9 +89,7 @@ int CoreView::support(const Eigen::Vector3d& direction, Eigen::Vector3d& point) 
 int CoreView::exactSupport(const Eigen::Vector3d& direction, Eigen::Vector3d& point) const
 {
   if (shape->kind != ShapeKind::HULL)
-  {
     return support(direction, point);
-  }
   const int index = farthestVertex(shape->core, rotation.transpose() * direction);
   point = transformed(*this, shape->core.vertices[index]);
   return index;
@@ -127,13 +123,9 @@ Eigen::Vector3d wayOut(const CoreView& b, const Eigen::Vector3d& point)
   {
     const double radial = std::hypot(local.x(), local.y());
     if (radial - b.shape->radius > std::abs(local.z()) - b.shape->half_length && radial > 0.0)
-    {
       best = Eigen::Vector3d(local.x() / radial, local.y() / radial, 0.0);
-    }
     else
-    {
       best.z() = local.z() < 0.0 ? -1.0 : 1.0;
-    }
   }
   double largest = -std::numeric_limits<double>::infinity();
   for (const Polyhedron::Face& face : b.core().faces)
@@ -163,9 +155,7 @@ Eigen::Vector3d firstDirection(const CoreView& a, const CoreView& b)
     (isSolid(a) ? small_a : small_b).shrink = shrink;
     const ClosestPoints closest = closestPoints(small_a, small_b);
     if (closest.are_apart)
-    {
       return closest.difference.normalized();
-    }
   }
   return isSolid(a) && !isSolid(b) ? Eigen::Vector3d(-wayOut(a, b.interior())) : wayOut(b, a.interior());
 }
@@ -210,19 +200,13 @@ Eigen::Vector3d separatingDirection(const CoreView& a, const CoreView& b, Closes
   const double size = coreSize(a, b);
   closest = closestPoints(a, b);
   if (closest.are_apart && closest.difference.norm() > 1e-7 * size)
-  {
     return closest.difference.normalized();
-  }
   const auto is_point = [](const CoreView& view) { return view.core().vertices.size() == 1; };
   if (is_point(a) || is_point(b))
-  {
     return is_point(a) ? wayOut(b, a.translation) : Eigen::Vector3d(-wayOut(a, b.translation));
-  }
   Eigen::Vector3d n = firstDirection(a, b);
   if (separation(a, b, n) < -DEEP * size)
-  {
     n = bestStart(a, b, n);
-  }
   for (int round = 0; round < 20; ++round)
   {
     CoreView moved = a;
@@ -230,17 +214,13 @@ Eigen::Vector3d separatingDirection(const CoreView& a, const CoreView& b, Closes
     moved.translation += shift * n;
     const ClosestPoints next = closestPoints(moved, b);
     if (!next.are_apart)
-    {
       break;
-    }
     const Eigen::Vector3d direction = next.difference.normalized();
     closest = next;
     const bool has_settled = (direction - n).norm() < 1e-9;
     n = direction;
     if (has_settled)
-    {
       break;
-    }
   }
   return n;
 }

@@ -38,14 +38,10 @@ double nearestToLine(const Circle& circle, const Eigen::Vector3d& point, const E
     const double convex = tangent.squaredNorm();
     const double step = difference.dot(tangent) / (slope > 0.1 * convex ? slope : convex);
     if (!std::isfinite(step))
-    {
       break;
-    }
     angle -= step;
     if (std::abs(step) <= CONVERGED)
-    {
       break;
-    }
   }
   return angle;
 }
@@ -72,15 +68,11 @@ void nearestOnCircles(const Circle& first, const Circle& second, double& angle_1
     const double step_1 = (h22 * gradient.x() - h12 * gradient.y()) / determinant;
     const double step_2 = (h11 * gradient.y() - h12 * gradient.x()) / determinant;
     if (!std::isfinite(step_1) || !std::isfinite(step_2))
-    {
       break;
-    }
     angle_1 -= step_1;
     angle_2 -= step_2;
     if (std::abs(step_1) <= CONVERGED && std::abs(step_2) <= CONVERGED)
-    {
       break;
-    }
   }
 }
 

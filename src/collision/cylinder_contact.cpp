@@ -73,9 +73,7 @@ FlatAxis capAxis(const CorePair& pair, bool is_on_a, const Eigen::Vector3d& n)
 FlatAxis flatOfB(const CorePair& pair, const Eigen::Vector3d& n)
 {
   if (pair.b.shape->kind == ShapeKind::CYLINDER)
-  {
     return capAxis(pair, false, n);
-  }
   const FaceAxis face = faceAxis(pair, false, alignedFace(pair.b, n));
   FlatAxis flat;
   flat.face = face.face;
@@ -96,16 +94,12 @@ bool tryFlat(const CorePair& pair, const FlatAxis& flat, double best)
 {
   const bool is_round = touchesRound(pair, flat);
   if (!(flat.separation >= best - (is_round ? FLAT_PREFERENCE_ROUND : FLAT_PREFERENCE) * pair.size))
-  {
     return false;
-  }
   const int first = pair.manifold.count;
   addFlatContacts(pair, flat);
   const double tolerance = (is_round ? OVER_FLAT_ROUND : OVER_FLAT) * pair.size;
   if (deepestGap(pair, first) <= flat.separation - pair.radii() + tolerance)
-  {
     return true;
-  }
   pair.manifold.count = first;
   return false;
 }
@@ -122,9 +116,7 @@ void addCurveContacts(const CorePair& pair, const CurveContacts& curves, const F
   const CurveContact& best = curves.best;
   const bool is_lying = std::abs(pair.a.rotation.col(2).dot(best.normal)) < PARALLEL;
   if (!best.is_crossing || curves.end_count == 0)
-  {
     addCurve(pair, best);
-  }
   for (int k = 0; k < curves.end_count && is_lying; ++k)
   {
     if (angleBetween(curves.ends[k].normal, best.normal) < PARALLEL)
@@ -177,17 +169,11 @@ bool collideByCertificate(const CorePair& pair)
   const FlatAxis flat = bestOfFew(pair);
   const double limit = pair.margin + pair.radii();
   if (flat.separation > limit)
-  {
     return true;
-  }
   if (flat.separation >= shallow && tryFlat(pair, flat, flat.separation))
-  {
     return true;
-  }
   if (pair.b.shape->kind != ShapeKind::CYLINDER)
-  {
     return false;
-  }
   const LineParameters line =
       closestOnLines(pair.a.translation, pair.a.rotation.col(2), pair.b.translation, pair.b.rotation.col(2));
   const double half_a = pair.a.shape->half_length;
@@ -195,9 +181,7 @@ bool collideByCertificate(const CorePair& pair)
   const Eigen::Vector3d between = pair.a.translation + std::clamp(line.s, -half_a, half_a) * pair.a.rotation.col(2) -
                                   pair.b.translation - std::clamp(line.t, -half_b, half_b) * pair.b.rotation.col(2);
   if (between.norm() < SHALLOW * pair.size)
-  {
     return false;
-  }
   const CurveContacts curves = findCurveContacts(pair, between.normalized(), ClosestPoints());
   const CurveContact& best = curves.best;
   const double gap = best.normal.dot(best.point_a - best.point_b);
@@ -205,13 +189,9 @@ bool collideByCertificate(const CorePair& pair)
   const double tolerance = OVER_FLAT_ROUND * pair.size;
   if (best.separation < shallow || !best.is_proper || std::abs(gap - best.separation) > tolerance ||
       (!best.is_crossing && across > OVER_FLAT * pair.size))
-  {
     return false;
-  }
   if (best.separation <= limit)
-  {
     addCurveContacts(pair, curves, flat);
-  }
   return true;
 }
 }  // namespace
@@ -233,9 +213,7 @@ void collideCylinder(const ConvexShape& a, const ConvexShape& b, const Eigen::Is
   ClosestPoints closest;
   const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
   if (separation(pair.a, pair.b, n) > margin + pair.radii())
-  {
     return;
-  }
   const FlatAxis on_b = flatOfB(pair, n);
   const FlatAxis on_a = capAxis(pair, true, n);
   const CurveContacts curves = findCurveContacts(pair, n, closest);
@@ -244,9 +222,7 @@ void collideCylinder(const ConvexShape& a, const ConvexShape& b, const Eigen::Is
   const FlatAxis& first = prefers_a ? on_a : on_b;
   const FlatAxis& second = prefers_a ? on_b : on_a;
   if (best <= margin + pair.radii() && !tryFlat(pair, first, best) && !tryFlat(pair, second, best))
-  {
     addCurveContacts(pair, curves, first);
-  }
   reduceAcross(pair);
 }
 

@@ -23,21 +23,15 @@ struct Search
   {
     const double length = contact.normal.norm();
     if (!(length > 0.0) || !std::isfinite(length))
-    {
       return;
-    }
     contact.normal *= (contact.normal.dot(hint) < 0.0 ? -1.0 : 1.0) / length;
     contact.separation = separation(pair.a, pair.b, contact.normal);
     contact.point_a -= (contact.is_on_axis_a ? pair.a.shape->radius : 0.0) * contact.normal;
     contact.point_b += (contact.is_on_axis_b ? pair.b.shape->radius : 0.0) * contact.normal;
     if (contact.is_end && found.end_count < static_cast<int>(found.ends.size()))
-    {
       found.ends[found.end_count++] = contact;
-    }
     if (contact.separation > found.best.separation + 1e-15 * pair.size)
-    {
       found.best = contact;
-    }
   }
 
   Eigen::Vector3d direction(const Eigen::Vector3d& difference) const
@@ -94,9 +88,7 @@ Eigen::Vector3d acrossLines(const Search& search, const Eigen::Vector3d& d, cons
 {
   const Eigen::Vector3d cross = d.cross(e);
   if (cross.norm() > PARALLEL_LINES * d.norm() * e.norm())
-  {
     return cross;
-  }
   const Eigen::Vector3d along = e.normalized();
   return search.direction(difference - along * along.dot(difference));
 }

@@ -31,9 +31,7 @@ struct Adder
         std::any_of(points.begin() + first, points.begin() + before,
                     [&](const PairContact& other)
                     { return (other.position - points[before].position).norm() < SAME_POINT * pair.size; }))
-    {
       --pair.manifold.count;
-    }
   }
 };
 
@@ -56,9 +54,7 @@ int circleCuts(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::
   const Eigen::Vector3d d = q - p;
   const double length_squared = d.squaredNorm();
   if (!(length_squared > 0.0))
-  {
     return 0;
-  }
   const double middle = (center - p).dot(d) / length_squared;
   const double height_squared = (p + middle * d - center).squaredNorm();
   const double half_squared = (radius * radius - height_squared) / length_squared;
@@ -67,9 +63,7 @@ int circleCuts(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::
   {
     const double s = middle + sign * std::sqrt(std::max(half_squared, 0.0));
     if (half_squared > 0.0 && s > 0.0 && s < 1.0)
-    {
       cuts[count++] = s;
-    }
   }
   return count;
 }
@@ -116,9 +110,7 @@ void addDiscOnPolygon(const Adder& add, int cap, int face_index)
     const Eigen::Vector3d& next = corners[(k + 1) % face.size];
     const Eigen::Vector3d on_cap = alongTo(corner, n, center, cap_normal);
     if ((on_cap - center).norm() <= a.radius() + SIDE_TOLERANCE * pair.size)
-    {
       add(on_cap, corner, capFeature(cap), makeFeature(FeatureKind::VERTEX, core.face_vertices[face.first + k]));
-    }
     std::array<double, 2> cuts;
     const int count = circleCuts(on_cap, alongTo(next, n, center, cap_normal), center, a.radius(), cuts);
     for (int c = 0; c < count; ++c)
@@ -133,9 +125,7 @@ void addDiscOnPolygon(const Adder& add, int cap, int face_index)
                  {
                    const Eigen::Vector3d foot = alongTo(point, n, plane_point, outwards);
                    if (isInsideSides(foot, SIDE_TOLERANCE * pair.size, pair.manifold))
-                   {
                      add(point, foot, feature, makeFeature(FeatureKind::FACE, face_index));
-                   }
                  });
 }
 
@@ -161,9 +151,7 @@ void addGeneratorOnFace(const Adder& add, int face_index)
     const std::array<double, 2> outside = {side.dot(ends[0] - pair.manifold.corners[k]),
                                            side.dot(ends[1] - pair.manifold.corners[k])};
     if (outside[0] > tolerance && outside[1] > tolerance)
-    {
       return;
-    }
     for (int e = 0; e < 2; ++e)
     {
       if (outside[e] > tolerance)
@@ -177,9 +165,7 @@ void addGeneratorOnFace(const Adder& add, int face_index)
     }
   }
   for (int e = 0; e < (is_lying ? 2 : 1); ++e)
-  {
     add(ends[e], alongTo(ends[e], n, plane_point, n), on_a[e], on_b[e]);
-  }
 }
 
 /// A segment of the other shape over the cap: what is over the disc. Its points are on the other's core.
@@ -193,18 +179,12 @@ void addSegmentOnCap(const Adder& add, const CylinderView& reference, const std:
   const auto offer = [&](const Eigen::Vector3d& point, Feature on_cap, Feature on_other)
   { add.axis.is_on_a ? add(foot(point), point, on_cap, on_other) : add(point, foot(point), on_other, on_cap); };
   for (int e = 0; e < 2; ++e)
-  {
     if ((foot(ends[e]) - center).norm() <= reference.radius() + SIDE_TOLERANCE * add.pair.size)
-    {
       offer(ends[e], capFeature(cap), features[e]);
-    }
-  }
   std::array<double, 2> cuts;
   const int count = circleCuts(foot(ends[0]), foot(ends[1]), center, reference.radius(), cuts);
   for (int c = 0; c < count; ++c)
-  {
     offer(ends[0] + cuts[c] * (ends[1] - ends[0]), rimCut(cap, c), cut_feature);
-  }
 }
 
 /// Two discs, near flat: rim points of each over the other, and where the circles cross.
@@ -236,9 +216,7 @@ void addDiscOnDisc(const Adder& add, const CylinderView& reference, const Cylind
     const Eigen::Vector3d point = center + reference.radius() * (reference.view.rotation * rimDirection(k));
     const Eigen::Vector3d above = alongTo(point, normal, other_center, other_normal);
     if ((above - other_center).norm() <= other.radius() + tolerance)
-    {
       offer(point, above, fixedRimFeature(cap, k), capFeature(other_cap));
-    }
   }
   // crossings of the circles, in the plane of the reference cap
   const Eigen::Vector3d between = alongTo(other_center, normal, center, normal) - center;
@@ -283,13 +261,9 @@ bool addFlatContacts(const CorePair& pair, const FlatAxis& axis)
   if (axis.face >= 0)
   {
     if (a.sine(axis.normal) < NEAR_FLAT_SINE)
-    {
       addDiscOnPolygon(add, a.capTowards(-axis.normal), axis.face);
-    }
     else
-    {
       addGeneratorOnFace(add, axis.face);
-    }
   }
   else if (pair.b.shape->kind == ShapeKind::CYLINDER)
   {

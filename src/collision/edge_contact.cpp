@@ -93,9 +93,7 @@ int addOverlapEnds(const CorePair& pair, const EdgeLine& a, const EdgeLine& b, c
   const double low = std::max(0.0, std::min(at_0, at_1));
   const double high = std::min(1.0, std::max(at_0, at_1));
   if (high - low <= NO_DISTANCE)
-  {
     return 0;
-  }
   for (double s : {low, high})
   {
     const bool is_end_of_a = s <= 0.0 || s >= 1.0;
@@ -113,9 +111,7 @@ LineParameters closestOnLines(const Eigen::Vector3d& p, const Eigen::Vector3d& d
   const Eigen::Vector3d normal = d.cross(e);
   const double scale = normal.squaredNorm();
   if (scale == 0.0)
-  {
     return {0.0, 0.0};
-  }
   const Eigen::Vector3d between = q - p;
   return {between.cross(e).dot(normal) / scale, between.cross(d).dot(normal) / scale};
 }
@@ -141,9 +137,7 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
   const int first = pair.manifold.count;
   const int ends = sine < parallel ? addOverlapEnds(pair, a, b, side) : 0;
   if (!has_crossing && ends > 0)
-  {
     return;
-  }
   const LineParameters line = closestOnLines(a.start, a.direction, b.start, b.direction);
   const bool is_inside = has_crossing && line.s > 0.0 && line.s < 1.0 && line.t > 0.0 && line.t < 1.0;
   if (is_inside)
@@ -157,9 +151,7 @@ void addEdgeContacts(const CorePair& pair, const EdgeEnds& on_a, const EdgeEnds&
     addNearest(pair, a, closest.s, b, closest.t, side);
   }
   if (pair.manifold.count == first)
-  {
     return;  // the closest point is beyond the margin
-  }
   // the closest point may be one of the ends
   const Eigen::Vector3d last = pair.manifold.points[pair.manifold.count - 1].position;
   for (int k = first; k < pair.manifold.count - 1; ++k)

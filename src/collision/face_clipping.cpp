@@ -45,8 +45,8 @@ void clipSide(const Reference& reference, int k, Feature incident_face, double t
   const Eigen::Vector3d normal = work.side_normals[k];
   const Eigen::Vector3d corner = work.corners[k];
   work.clipped.clear();
-  const std::size_t size = work.polygon.size();
-  for (std::size_t i = 0; i < size; ++i)
+  const size_t size = work.polygon.size();
+  for (size_t i = 0; i < size; ++i)
   {
     const ClipPoint& from = work.polygon[i];
     const ClipPoint& to = work.polygon[(i + 1) % size];
@@ -55,9 +55,7 @@ void clipSide(const Reference& reference, int k, Feature incident_face, double t
     const bool is_from_inside = from_outside <= tolerance;
     const bool is_to_inside = to_outside <= tolerance;
     if (is_from_inside)
-    {
       work.clipped.push_back(from);
-    }
     if (is_from_inside != is_to_inside)
     {
       // an end within the tolerance outside would put the cut beyond it
@@ -100,7 +98,7 @@ int incidentFace(const CoreView& view, const Eigen::Vector3d& normal)
   const Eigen::Vector3d local = view.rotation.transpose() * normal;
   int best = 0;
   double lowest = 2.0;
-  for (std::size_t f = 0; f < view.core().faces.size(); ++f)
+  for (size_t f = 0; f < view.core().faces.size(); ++f)
   {
     const double cosine = view.core().faces[f].normal.dot(local);
     if (cosine < lowest - 1e-9)  // ties go to the first face
@@ -133,9 +131,7 @@ void addNeighbours(const CoreView& view, const Polyhedron::Face& face, const Ref
       const Eigen::Vector3d position = view.vertex(other);
       if (reference.height(position) <= highest && isInsideSides(position, tolerance, work) &&
           std::none_of(work.polygon.begin(), work.polygon.end(), has_it))
-      {
         addClipPoint(view, other, 0, reference, work);
-      }
     }
   }
 }
@@ -150,34 +146,22 @@ void clipIncident(const CorePair& pair, const Reference& reference, const CoreVi
   work.polygon.clear();
   if (core.vertices.size() <= 2)
   {
-    for (std::size_t v = 0; v < core.vertices.size(); ++v)
-    {
+    for (size_t v = 0; v < core.vertices.size(); ++v)
       addClipPoint(incident, static_cast<int>(v), 0, reference, work);
-    }
     if (work.polygon.size() == 2)
-    {
       clipSegment(reference, tolerance, work);
-    }
     else if (!isInsideSides(work.polygon[0].position, tolerance, work))
-    {
       work.polygon.clear();
-    }
     return;
   }
   const int face_index = incidentFace(incident, reference.normal);
   const Polyhedron::Face& face = core.faces[face_index];
   for (int k = 0; k < face.size; ++k)
-  {
     addClipPoint(incident, core.face_vertices[face.first + k], core.face_edges[face.first + k], reference, work);
-  }
   for (int k = 0; k < reference.face.size && !work.polygon.empty(); ++k)
-  {
     clipSide(reference, k, makeFeature(FeatureKind::FACE, face_index), tolerance, work);
-  }
   if (incident.shape->kind == ShapeKind::HULL)
-  {
     addNeighbours(incident, face, reference, pair.margin + pair.radii(), tolerance, work);
-  }
 }
 }  // namespace
 
@@ -186,9 +170,7 @@ void setSides(const CoreView& view, const Polyhedron::Face& face, const Eigen::V
   work.corners.clear();
   work.side_normals.clear();
   for (int k = 0; k < face.size; ++k)
-  {
     work.corners.push_back(view.vertex(view.core().face_vertices[face.first + k]));
-  }
   for (int k = 0; k < face.size; ++k)
   {
     const Eigen::Vector3d edge = work.corners[(k + 1) % face.size] - work.corners[k];
@@ -198,13 +180,9 @@ void setSides(const CoreView& view, const Polyhedron::Face& face, const Eigen::V
 
 bool isInsideSides(const Eigen::Vector3d& point, double tolerance, const Manifold& work)
 {
-  for (std::size_t k = 0; k < work.corners.size(); ++k)
-  {
+  for (size_t k = 0; k < work.corners.size(); ++k)
     if (work.side_normals[k].dot(point - work.corners[k]) > tolerance)
-    {
       return false;
-    }
-  }
   return true;
 }
 
@@ -227,13 +205,9 @@ bool clipAgainstFace(const CorePair& pair, const FaceAxis& axis)
         [&](const PairContact& other)
         { return (other.position - across).squaredNorm() < SAME_POINT * SAME_POINT * pair.size * pair.size; });
     if (is_new && axis.is_on_a)
-    {
       pair.add(foot, point.position, axis.normal, point.reference, point.incident);
-    }
     else if (is_new)
-    {
       pair.add(point.position, foot, axis.normal, point.incident, point.reference);
-    }
   }
   return work.count > first;
 }

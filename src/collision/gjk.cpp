@@ -43,9 +43,7 @@ double distanceSquared(const Simplex& simplex, const Subset& subset)
 {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   for (int k = 0; k < subset.count; ++k)
-  {
     point += subset.weight[k] * simplex.corner[subset.index[k]].difference;
-  }
   return point.squaredNorm();
 }
 
@@ -57,17 +55,11 @@ Subset closestOnEdge(const Simplex& simplex, int i, int k)
   const double t = length_squared > 0.0 ? -p.dot(edge) / length_squared : 0.0;
   Subset subset;
   if (t <= 0.0)
-  {
     subset = {{i}, {1.0}, 1};
-  }
   else if (t >= 1.0)
-  {
     subset = {{k}, {1.0}, 1};
-  }
   else
-  {
     subset = {{i, k}, {1.0 - t, t}, 2};
-  }
   subset.distance_squared = distanceSquared(simplex, subset);
   return subset;
 }
@@ -139,9 +131,7 @@ bool reduce(Simplex& simplex)
       break;
     default:
       if (!closestOnTetrahedron(simplex, subset))
-      {
         return false;
-      }
   }
   const std::array<Corner, 4> old = simplex.corner;
   for (int k = 0; k < subset.count; ++k)
@@ -176,9 +166,7 @@ ClosestPoints closestPoints(const CoreView& a, const CoreView& b)
   Simplex simplex;
   Eigen::Vector3d v = a.interior() - b.interior();
   if (v.squaredNorm() == 0.0)
-  {
     v = Eigen::Vector3d::UnitZ();
-  }
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < MAX_ITERATIONS; ++iteration)
   {
@@ -189,33 +177,21 @@ ClosestPoints closestPoints(const CoreView& a, const CoreView& b)
     const double distance_squared = v.squaredNorm();
     const bool has_point = simplex.count > 0;
     if (has_point && distance_squared - v.dot(corner.difference) <= RELATIVE_PROGRESS * distance_squared)
-    {
       return result(simplex, true);
-    }
     const auto is_same = [&](const Corner& other) { return other.difference == corner.difference; };
     if (std::any_of(simplex.corner.begin(), simplex.corner.begin() + simplex.count, is_same))
-    {
       return result(simplex, true);
-    }
     const Simplex before = simplex;
     simplex.corner[simplex.count++] = corner;
     if (!reduce(simplex))
-    {
       return result(before, false);
-    }
     v.setZero();
     for (int k = 0; k < simplex.count; ++k)
-    {
       v += simplex.weight[k] * simplex.corner[k].difference;
-    }
     if (v.squaredNorm() <= touching * touching)
-    {
       return result(simplex, false);
-    }
     if (v.squaredNorm() >= last)  // round-off: the simplex before was as good
-    {
       return result(before.count > 0 ? before : simplex, true);
-    }
     last = v.squaredNorm();
   }
   return result(simplex, true);

@@ -21,9 +21,7 @@ void addPoint(const Eigen::Vector3d& surface_point, double margin, Feature featu
 {
   const double gap = surface_point.z();
   if (gap <= margin)
-  {
     manifold.add({{surface_point.x(), surface_point.y(), 0.5 * gap}, Eigen::Vector3d::UnitZ(), gap, feature, PLANE});
-  }
 }
 
 void boxOnPlane(const ConvexShape& box, const Eigen::Isometry3d& pose, double margin, Manifold& manifold)
@@ -32,16 +30,12 @@ void boxOnPlane(const ConvexShape& box, const Eigen::Isometry3d& pose, double ma
   const Eigen::Vector3d up = pose.linear().row(2).transpose();
   int fixed_bit = -1;
   for (int i = 0; i < 3; ++i)
-  {
     fixed_bit = std::abs(up[i]) > 0.9 ? i : fixed_bit;
-  }
   for (int corner = 0; corner < 8; ++corner)
   {
     const bool is_upper = fixed_bit >= 0 && (((corner >> fixed_bit) & 1) == 1) == (up[fixed_bit] > 0.0);
     if (!is_upper)
-    {
       addPoint(pose * box.core.vertices[corner], margin, makeFeature(FeatureKind::VERTEX, corner), manifold);
-    }
   }
 }
 
@@ -49,7 +43,7 @@ void roundedOnPlane(const ConvexShape& shape, const Eigen::Isometry3d& pose, dou
 {
   const Eigen::Vector3d up = pose.linear().row(2).transpose();
   const double height = pose.translation().z() - shape.radius;
-  for (std::size_t v = 0; v < shape.core.vertices.size(); ++v)
+  for (size_t v = 0; v < shape.core.vertices.size(); ++v)
   {
     const double gap = up.dot(shape.core.vertices[v]) + height;
     if (gap <= margin)
@@ -78,9 +72,7 @@ void cylinderOnPlane(const ConvexShape& shape, const Eigen::Isometry3d& pose, do
     const Eigen::Vector3d radial = shape.radius * (pose.linear() * down);
     addPoint(low_center + radial, margin, lowestRimFeature(low_cap), manifold);
     if (std::abs(axis.z()) < GENERATOR_SINE)
-    {
       addPoint(pose.translation() - to_low + radial, margin, lowestRimFeature(1 - low_cap), manifold);
-    }
     const double angle = std::atan2(down.y(), down.x());
     nearest_fixed = (static_cast<int>(std::lround(angle / (0.25 * M_PI))) + RIM_POINTS) % RIM_POINTS;
   }
@@ -101,17 +93,11 @@ void cylinderOnPlane(const ConvexShape& shape, const Eigen::Isometry3d& pose, do
 void collideHalfSpace(const ConvexShape& a, const Eigen::Isometry3d& a_in_b, double margin, Manifold& manifold)
 {
   if (a.kind == ShapeKind::BOX)
-  {
     boxOnPlane(a, a_in_b, margin, manifold);
-  }
   else if (a.kind == ShapeKind::CYLINDER)
-  {
     cylinderOnPlane(a, a_in_b, margin, manifold);
-  }
   else if (a.kind != ShapeKind::HALF_SPACE)
-  {
     roundedOnPlane(a, a_in_b, margin, manifold);
-  }
   if (manifold.count > MAX_PAIR_POINTS)
   {
     // Tangents fixed in the body (the two axes most across the normal): turning about the normal changes no choice.

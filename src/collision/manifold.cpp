@@ -12,9 +12,9 @@ constexpr double TOUCHING = 1e-6;  // times the size: the same depth as the deep
 constexpr double SAME_GAP = 1e-9;  // times the size: ties go to the earlier point
 }  // namespace
 
-void Manifold::reserve(std::size_t vertices)
+void Manifold::reserve(size_t vertices)
 {
-  const std::size_t room = vertices + 64;
+  const size_t room = vertices + 64;
   points.resize(std::max(points.size(), room));
   is_kept.reserve(room);
   polygon.reserve(room);
@@ -27,34 +27,24 @@ void sortManifold(Manifold& manifold)
 {
   const auto key = [](const PairContact& point) { return std::make_pair(point.feature_a, point.feature_b); };
   for (int i = 1; i < manifold.count; ++i)
-  {
     for (int k = i; k > 0 && key(manifold.points[k]) < key(manifold.points[k - 1]); --k)
-    {
       std::swap(manifold.points[k], manifold.points[k - 1]);
-    }
-  }
 }
 
 void reduceManifold(const Eigen::Matrix<double, 3, 2>& tangents, double size, Manifold& manifold)
 {
   if (manifold.count <= MAX_PAIR_POINTS)
-  {
     return;
-  }
   std::vector<char>& is_kept = manifold.is_kept;
   is_kept.assign(manifold.count, 0);
   double deepest = manifold.points[0].gap;
   for (int i = 1; i < manifold.count; ++i)
-  {
     deepest = std::min(deepest, manifold.points[i].gap);
-  }
   const double touching = deepest + TOUCHING * size;
   const auto isTouching = [&](int i) { return manifold.points[i].gap <= touching; };
   int touching_count = 0;
   for (int i = 0; i < manifold.count; ++i)
-  {
     touching_count += isTouching(i) ? 1 : 0;
-  }
   int kept_count = 0;
   const auto keep = [&](int i)
   {
@@ -84,32 +74,20 @@ void reduceManifold(const Eigen::Matrix<double, 3, 2>& tangents, double size, Ma
     keep(best);
   }
   if (touching_count <= MAX_PAIR_POINTS)
-  {
     for (int i = 0; i < manifold.count; ++i)
-    {
       keep(isTouching(i) ? i : -1);
-    }
-  }
   while (kept_count < MAX_PAIR_POINTS)
   {
     int best = -1;
     for (int i = 0; i < manifold.count; ++i)
-    {
       if (!is_kept[i] && (best < 0 || manifold.points[i].gap < manifold.points[best].gap - SAME_GAP * size))
-      {
         best = i;
-      }
-    }
     keep(best);
   }
   int count = 0;
   for (int i = 0; i < manifold.count; ++i)
-  {
     if (is_kept[i])
-    {
       manifold.points[count++] = manifold.points[i];
-    }
-  }
   manifold.count = count;
 }
 

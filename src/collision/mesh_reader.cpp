@@ -25,9 +25,7 @@ void addVertices(const aiScene& scene, const aiNode& node, const aiMatrix4x4& pa
     }
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c)
-  {
     addVertices(scene, *node.mChildren[c], pose, scale, vertices);
-  }
 }
 }  // namespace
 
@@ -45,9 +43,7 @@ std::vector<Eigen::Vector3d> readMesh(const std::string& path, const Eigen::Vect
   std::vector<Eigen::Vector3d> vertices;
   addVertices(*scene, *scene->mRootNode, aiMatrix4x4(), scale, vertices);
   if (vertices.empty())
-  {
     throw ModelError(path + ": mesh has no vertices");
-  }
   return vertices;
 }
 

@@ -26,9 +26,7 @@ void setBounds(Polyhedron& polyhedron)
   polyhedron.half_extent = 0.5 * (high - low);
   polyhedron.interior = sum / static_cast<double>(polyhedron.vertices.size());
   for (const Eigen::Vector3d& vertex : polyhedron.vertices)
-  {
     polyhedron.size = std::max(polyhedron.size, (vertex - polyhedron.center).norm());
-  }
 }
 
 void setNeighbours(Polyhedron& polyhedron)
@@ -54,19 +52,17 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
   for (const std::vector<int>& loop : loops)
   {
     const int first = static_cast<int>(polyhedron.face_vertices.size());
-    const std::size_t size = loop.size();
+    const size_t size = loop.size();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     const Eigen::Vector3d& origin = polyhedron.vertices[loop[0]];
-    for (std::size_t k = 0; k < size; ++k)
+    for (size_t k = 0; k < size; ++k)
     {
       const int v0 = loop[k];
       const int v1 = loop[(k + 1) % size];
       const auto key = std::minmax(v0, v1);
       const auto [entry, is_new] = edge_index.try_emplace(key, static_cast<int>(polyhedron.edges.size()));
       if (is_new)
-      {
         polyhedron.edges.push_back({{key.first, key.second}});
-      }
       polyhedron.face_vertices.push_back(v0);
       polyhedron.face_edges.push_back(entry->second);
       // Newell's normal, about a corner for accuracy: the area-weighted mean over the polygon
@@ -76,9 +72,7 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
     normal.normalize();
     double offset = normal.dot(origin);
     for (int vertex : loop)
-    {
       offset = std::max(offset, normal.dot(polyhedron.vertices[vertex]));
-    }
     polyhedron.faces.push_back({normal, offset, first, static_cast<int>(size), area});
   }
   setBounds(polyhedron);
@@ -88,13 +82,9 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
 int Polyhedron::findEdge(int vertex_0, int vertex_1) const
 {
   const auto key = std::minmax(vertex_0, vertex_1);
-  for (std::size_t e = 0; e < edges.size(); ++e)
-  {
+  for (size_t e = 0; e < edges.size(); ++e)
     if (edges[e].vertex[0] == key.first && edges[e].vertex[1] == key.second)
-    {
       return static_cast<int>(e);
-    }
-  }
   return -1;
 }
 

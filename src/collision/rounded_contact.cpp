@@ -27,7 +27,7 @@ int alignedFace(const CoreView& view, const Eigen::Vector3d& direction)
   const Eigen::Vector3d local = view.rotation.transpose() * direction;
   int best = -1;
   double largest = -2.0;
-  for (std::size_t f = 0; f < view.core().faces.size(); ++f)
+  for (size_t f = 0; f < view.core().faces.size(); ++f)
   {
     const double cosine = view.core().faces[f].normal.dot(local);
     if (cosine > largest + 1e-9)
@@ -43,9 +43,7 @@ FaceAxis faceAxis(const CorePair& pair, bool is_on_a, int face)
 {
   FaceAxis axis;
   if (face < 0)
-  {
     return axis;
-  }
   const CoreView& view = is_on_a ? pair.a : pair.b;
   const CoreView& other = is_on_a ? pair.b : pair.a;
   const Eigen::Vector3d outwards = view.rotation * view.core().faces[face].normal;
@@ -69,14 +67,10 @@ namespace
 FaceAxis chooseFace(const CorePair& pair, const FaceAxis& on_a, const FaceAxis& on_b)
 {
   if (on_a.face < 0 || on_b.face < 0)
-  {
     return on_b.face < 0 ? on_a : on_b;
-  }
   const double difference = on_a.separation - on_b.separation;
   if (std::abs(difference) > FACE_PREFERENCE * pair.size)
-  {
     return difference > 0.0 ? on_a : on_b;
-  }
   const bool is_a_larger = pair.a.core().faces[on_a.face].area > 1.01 * pair.b.core().faces[on_b.face].area;
   return is_a_larger ? on_a : on_b;
 }
@@ -119,9 +113,7 @@ bool tryFace(const CorePair& pair, const FaceAxis& face)
   const double tolerance = (pair.radii() > 0.0 ? OVER_FACE_ROUND : OVER_FACE) * pair.size;
   clipAgainstFace(pair, face);
   if (deepestGap(pair, first) <= face.separation - pair.radii() + tolerance)
-  {
     return true;
-  }
   pair.manifold.count = first;
   return false;
 }
@@ -166,16 +158,12 @@ void collideAlong(const CorePair& pair)
   const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
   const double best = separation(pair.a, pair.b, n);
   if (best > pair.margin + pair.radii())
-  {
     return;
-  }
   const FaceAxis on_a = faceAxis(pair, true, alignedFace(pair.a, -n));
   const FaceAxis on_b = faceAxis(pair, false, alignedFace(pair.b, n));
   const FaceAxis face = chooseFace(pair, on_a, on_b);
   if (!tryFaces(pair, face, face.is_on_a ? on_b : on_a, best))
-  {
     addFeatureContacts(pair, closest, n, best, face);
-  }
 }
 
 /// Separating axis of two boxes among 3 + 3 face normals and 9 products of edges (Gottschalk, Lin, Manocha 1996).
@@ -221,9 +209,7 @@ BoxAxes boxAxes(const CorePair& pair)
       const Eigen::Vector3d cross = rotation.col(i).cross(Eigen::Vector3d::Unit(j));
       const double sine = cross.norm();
       if (sine < PARALLEL_EDGES)
-      {
         continue;  // parallel edges: the face normals do
-      }
       const Eigen::Vector3d n = (cross.dot(offset) < 0.0 ? -1.0 : 1.0) / sine * cross;
       const double reach = (rotation.transpose() * n).cwiseAbs().dot(half_a) + n.cwiseAbs().dot(half_b);
       const double between = n.dot(offset) - reach;
@@ -252,9 +238,7 @@ bool addBoxEdges(const CorePair& pair, const BoxAxes& axes)
   const LineParameters line =
       closestOnLines(start_a, pair.a.vertex(on_a.second) - start_a, start_b, pair.b.vertex(on_b.second) - start_b);
   if (std::min(line.s, line.t) < 0.0 || std::max(line.s, line.t) > 1.0)
-  {
     return false;
-  }
   addEdgeContacts(pair, on_a, on_b, axes.edge_normal);
   return true;
 }
@@ -265,9 +249,7 @@ void collideBoxes(const CorePair& pair)
   const FaceAxis face = chooseFace(pair, axes.face_a, axes.face_b);
   const double best = std::max(axes.edge_separation, std::max(axes.face_a.separation, axes.face_b.separation));
   if (best > pair.margin || tryFaces(pair, face, face.is_on_a ? axes.face_b : axes.face_a, best))
-  {
     return;
-  }
   if (axes.edge_separation == best && addBoxEdges(pair, axes))
   {
     addLookAhead(pair, face, axes.edge_normal, 0);
@@ -278,9 +260,7 @@ void collideBoxes(const CorePair& pair)
   const Eigen::Vector3d n = separatingDirection(pair.a, pair.b, closest);
   const double distance = separation(pair.a, pair.b, n);
   if (distance <= pair.margin)
-  {
     addFeatureContacts(pair, closest, n, distance, face);
-  }
 }
 
 void collideThin(const CorePair& pair)
@@ -307,9 +287,7 @@ double deepestGap(const CorePair& pair, int first)
 {
   double deepest = std::numeric_limits<double>::infinity();
   for (int k = first; k < pair.manifold.count; ++k)
-  {
     deepest = std::min(deepest, pair.manifold.points[k].gap);
-  }
   return deepest;
 }
 
@@ -319,9 +297,7 @@ void dropDuplicates(const CorePair& pair, int first, int found)
   int count = found;
   double least = std::numeric_limits<double>::infinity();
   for (int k = first; k < found; ++k)
-  {
     least = std::min(least, points[k].gap);
-  }
   least -= OVER_FACE * pair.size;
   for (int k = found; k < pair.manifold.count; ++k)
   {
@@ -333,9 +309,7 @@ void dropDuplicates(const CorePair& pair, int first, int found)
                               (other.position - points[k].position).norm() < 1e-2 * pair.size;
                      });
     if (is_new && points[k].gap >= least)
-    {
       points[count++] = points[k];
-    }
   }
   pair.manifold.count = count;
 }
@@ -381,17 +355,11 @@ void collideRounded(const ConvexShape& a, const ConvexShape& b, const Eigen::Iso
   const CorePair pair(a, b, a_in_b, margin, manifold);
   const auto isThin = [](const ConvexShape& shape) { return shape.core.faces.empty(); };
   if (isThin(a) && isThin(b))
-  {
     collideThin(pair);
-  }
   else if (a.kind == ShapeKind::BOX && b.kind == ShapeKind::BOX)
-  {
     collideBoxes(pair);
-  }
   else
-  {
     collideAlong(pair);
-  }
   reduceAcross(pair);
 }
 

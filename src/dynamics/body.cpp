@@ -25,23 +25,23 @@ struct Reach
 
 std::vector<double> linkExtents(const MultibodyModel& model)
 {
-  std::vector<double> extents(model.bodies.size(), 0.0);
+  std::vector<double> extents(model.links.size(), 0.0);
   for (const CollisionShape& shape : model.shapes)
-    extents[shape.body] =
-        std::max(extents[shape.body], shape.placement.translation().norm() + std::visit(Reach(), shape.geometry));
+    extents[shape.link] =
+        std::max(extents[shape.link], shape.placement.translation().norm() + std::visit(Reach(), shape.geometry));
   return extents;
 }
 
 std::vector<std::vector<int>> linkChains(const MultibodyModel& model)
 {
-  std::vector<std::vector<int>> chains(model.bodies.size());
-  for (size_t body = 0; body < model.joints.size(); ++body)
+  std::vector<std::vector<int>> chains(model.links.size());
+  for (size_t link = 0; link < model.joints.size(); ++link)
   {
-    const Joint& joint = model.joints[body];
+    const Joint& joint = model.joints[link];
     if (joint.parent >= 0)
-      chains[body] = chains[joint.parent];
+      chains[link] = chains[joint.parent];
     for (int k = 0; k < velocitySize(joint.type); ++k)
-      chains[body].push_back(joint.v_index + k);
+      chains[link].push_back(joint.v_index + k);
   }
   return chains;
 }
@@ -118,7 +118,7 @@ void updateEnd(Body& body)
   forwardVelocities(body.model.tree, body.state.v, body.end);
   // A moving base carries all links along; `reference` is its origin.
   if (motion.active)
-    for (Vector6d& velocity : body.end.body_velocity)
+    for (Vector6d& velocity : body.end.link_velocity)
     {
       velocity.head<3>() += motion.linear;
       velocity.tail<3>() += motion.angular;
@@ -145,9 +145,9 @@ void applyWrenches(Body& body, double now)
     if (now < wrench.from)
       continue;
     const Frame& frame = body.model.tree.frames[wrench.frame];
-    const Eigen::Isometry3d pose = body.middle.body_pose[frame.body] * frame.placement;
+    const Eigen::Isometry3d pose = body.middle.link_pose[frame.link] * frame.placement;
     const Eigen::Matrix3d axes = wrench.world_frame ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : pose.linear();
-    addWrench(body.model.tree, body.middle, frame.body, pose * wrench.point, axes * wrench.force, axes * wrench.torque,
+    addWrench(body.model.tree, body.middle, frame.link, pose * wrench.point, axes * wrench.force, axes * wrench.torque,
               body.external);
   }
 }
@@ -161,15 +161,15 @@ double servoInertia(const BodyModel& model, const MultibodyData& data, int joint
     return own;
   double subtree_mass = 0.0;
   double reach = 0.0;
-  const Eigen::Vector3d origin = data.body_pose[joint].translation();
-  for (size_t link = joint; link < tree.bodies.size(); ++link)
+  const Eigen::Vector3d origin = data.link_pose[joint].translation();
+  for (size_t link = joint; link < tree.links.size(); ++link)
   {
     const std::vector<int>& chain = model.chains[link];
     if (!std::binary_search(chain.begin(), chain.end(), moved.v_index))
       continue;
-    subtree_mass += tree.bodies[link].inertia.mass;
-    const Eigen::Isometry3d& pose = data.body_pose[link];
-    const Eigen::Vector3d center = pose * tree.bodies[link].inertia.center;
+    subtree_mass += tree.links[link].inertia.mass;
+    const Eigen::Isometry3d& pose = data.link_pose[link];
+    const Eigen::Vector3d center = pose * tree.links[link].inertia.center;
     reach = std::max({reach, (pose.translation() - origin).norm(), 2.0 * (center - origin).norm()});
   }
   const double rest = tree.totalMass() - subtree_mass;

@@ -54,10 +54,10 @@ void tangentFrame(const Eigen::Vector3d& normal, Eigen::Vector3d& tangent_1, Eig
 
 Eigen::Vector3d baseVelocity(const std::vector<Body>& bodies, const ShapeInfo& shape, const Eigen::Vector3d& position)
 {
-  if (shape.robot < 0 || !bodies[shape.robot].model.base_motion.active)
+  if (shape.body < 0 || !bodies[shape.body].model.base_motion.active)
     return Eigen::Vector3d::Zero();
-  const Body& body = bodies[shape.robot];
-  const Eigen::Vector3d arm = position - body.middle.body_pose.front().translation();
+  const Body& body = bodies[shape.body];
+  const Eigen::Vector3d arm = position - body.middle.link_pose.front().translation();
   return body.model.base_motion.linear + body.model.base_motion.angular.cross(arm);
 }
 
@@ -97,12 +97,12 @@ void ContactRows::collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& 
                                  PointColumns& columns) const
 {
   columns.clear();
-  if (shape.robot < 0)
+  if (shape.body < 0)
     return;
-  const Body& body = bodies_[shape.robot];
+  const Body& body = bodies_[shape.body];
   const MultibodyData& data = body.middle;
   const Eigen::Vector3d arm = position - data.reference;
-  for (const int j : body.model.chains[shape.body])
+  for (const int j : body.model.chains[shape.link])
   {
     const auto motion = data.motion_subspace.col(j);
     const Eigen::Vector3d angular = motion.tail<3>();

@@ -80,13 +80,13 @@ RollingShape::RollingShape(const CollisionShape& shape) : placement(shape.placem
   }
 }
 
-Eigen::Matrix3d RollingShape::spin(const Eigen::Isometry3d& body_pose, const Eigen::Vector3d& position,
+Eigen::Matrix3d RollingShape::spin(const Eigen::Isometry3d& link_pose, const Eigen::Vector3d& position,
                                    const Eigen::Vector3d& normal, bool& round) const
 {
   round = kind != Kind::FLAT;
   if (!round)
     return Eigen::Matrix3d::Zero();
-  const Eigen::Isometry3d pose = body_pose * placement;
+  const Eigen::Isometry3d pose = link_pose * placement;
   const Eigen::Vector3d axis = pose.linear().col(2);
   const Eigen::Vector3d arm = position - pose.translation();
   if (kind == Kind::SPHERE)

@@ -16,8 +16,8 @@ CreepRows::CreepRows(const std::vector<Body>& bodies, const CollisionWorld& worl
   for (int handle = 0; handle < world.shapeCount(); ++handle)
   {
     const ShapeInfo& shape = world.shape(handle);
-    shapes_.push_back(shape.robot < 0 ? RollingShape()
-                                      : RollingShape(bodies[shape.robot].model.tree.shapes[shape.index]));
+    shapes_.push_back(shape.body < 0 ? RollingShape()
+                                     : RollingShape(bodies[shape.body].model.tree.shapes[shape.index]));
   }
 }
 
@@ -37,12 +37,12 @@ void CreepRows::clear()
 Eigen::Vector3d CreepRows::addRollingSide(const ContactPoint& point, const ShapeInfo& shape, double weight,
                                           const Eigen::Matrix3d& spin)
 {
-  if (shape.robot < 0)
+  if (shape.body < 0)
     return Eigen::Vector3d::Zero();
-  const Body& body = bodies_[shape.robot];
+  const Body& body = bodies_[shape.body];
   const MultibodyData& data = body.middle;
   const Eigen::Vector3d arm = point.position - data.reference;
-  for (const int j : body.model.chains[shape.body])
+  for (const int j : body.model.chains[shape.link])
   {
     const auto motion = data.motion_subspace.col(j);
     const Eigen::Vector3d angular = motion.tail<3>();
@@ -62,7 +62,7 @@ void CreepRows::bend(const StepContext& context, const CreepTable& curve, const 
   const ShapeInfo& shape_a = world_.shape(point.shape_a);
   const ShapeInfo& shape_b = world_.shape(point.shape_b);
   const auto pose = [this](const ShapeInfo& shape)
-  { return shape.robot < 0 ? Eigen::Isometry3d::Identity() : bodies_[shape.robot].middle.body_pose[shape.body]; };
+  { return shape.body < 0 ? Eigen::Isometry3d::Identity() : bodies_[shape.body].middle.link_pose[shape.link]; };
   const RollingShape& rolling_a = shapes_[point.shape_a];
   const RollingShape& rolling_b = shapes_[point.shape_b];
   bool round_a = false;

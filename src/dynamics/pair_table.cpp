@@ -26,7 +26,8 @@ PairTable::PairTable(const MaterialTable& materials, const std::vector<SurfaceSi
 
 bool PairTable::hasCreep() const
 {
-  return std::any_of(table_.begin(), table_.end(), [](const Material& material) { return material.creep != nullptr; });
+  return std::any_of(
+      table_.begin(), table_.end(), [](const Material& material) { return material.creep != nullptr; });
 }
 
 }  // namespace frictional_contact_sim

@@ -7,7 +7,7 @@ namespace
 {
 /**
  * dS/dt v of one joint at the fixed point `reference`: the acceleration of the child relative to its parent when the
- * velocity coordinates are constant. A column fixed in a body of velocity V changes at the rate V x column; the axes of
+ * velocity coordinates are constant. A column fixed in a link of velocity V changes at the rate V x column; the axes of
  * a floating joint are fixed in the parent, but its rotations pass through the moving child origin.
  */
 Vector6d velocityProduct(const Joint& joint, const VectorIn& v, const Vector6d& parent, const Vector6d& child,
@@ -52,75 +52,65 @@ void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eig
                        MultibodyData& data, VectorOut bias)
 {
   forwardVelocities(model, v, data);
-  const int bodies = static_cast<int>(model.bodies.size());
-  for (int i = 0; i < bodies; ++i)
+  const int links = static_cast<int>(model.links.size());
+  for (int i = 0; i < links; ++i)
   {
     const Joint& joint = model.joints[i];
-    const Vector6d& velocity = data.body_velocity[i];
-    Vector6d& acceleration = data.body_acceleration[i];
+    const Vector6d& velocity = data.link_velocity[i];
+    Vector6d& acceleration = data.link_acceleration[i];
     Vector6d parent_velocity = Vector6d::Zero();
     if (joint.parent >= 0)
     {
-      parent_velocity = data.body_velocity[joint.parent];
-      acceleration = data.body_acceleration[joint.parent];
+      parent_velocity = data.link_velocity[joint.parent];
+      acceleration = data.link_acceleration[joint.parent];
     }
     else
     {
       // Gravity is the acceleration of the world, turned round.
       acceleration << -gravity, Eigen::Vector3d::Zero();
     }
-    const Eigen::Vector3d arm = data.body_pose[i].translation() - data.reference;
+    const Eigen::Vector3d arm = data.link_pose[i].translation() - data.reference;
     acceleration += velocityProduct(joint, v, parent_velocity, velocity, arm, data.motion_subspace);
-    const WorldInertia& inertia = data.body_inertia[i];
-    data.body_force[i] = multiply(inertia, acceleration) + crossForce(velocity, multiply(inertia, velocity));
+    const WorldInertia& inertia = data.link_inertia[i];
+    data.link_force[i] = multiply(inertia, acceleration) + crossForce(velocity, multiply(inertia, velocity));
   }
-  for (int i = bodies - 1; i >= 0; --i)
+  for (int i = links - 1; i >= 0; --i)
   {
     const Joint& joint = model.joints[i];
     const int end = joint.v_index + velocitySize(joint.type);
     for (int k = joint.v_index; k < end; ++k)
-    {
-      bias[k] = data.motion_subspace.col(k).dot(data.body_force[i]);
-    }
+      bias[k] = data.motion_subspace.col(k).dot(data.link_force[i]);
     if (joint.parent >= 0)
-    {
-      data.body_force[joint.parent] += data.body_force[i];
-    }
+      data.link_force[joint.parent] += data.link_force[i];
   }
 }
 
-void addWrench(const MultibodyModel& model, const MultibodyData& data, int body, const Eigen::Vector3d& point,
+void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau)
 {
-  if (body < 0)
-  {
+  if (link < 0)
     return;
-  }
   Vector6d wrench;
   wrench.head<3>() = force;
   wrench.tail<3>() = torque + (point - data.reference).cross(force);
-  for (int k = model.body_dof[body]; k >= 0; k = model.dof_parent[k])
-  {
+  for (int k = model.link_dof[link]; k >= 0; k = model.dof_parent[k])
     tau[k] += data.motion_subspace.col(k).dot(wrench);
-  }
 }
 
 double kineticEnergy(const MultibodyModel& model, const MultibodyData& data)
 {
   double energy = 0.0;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
-  {
-    energy += 0.5 * data.body_velocity[i].dot(multiply(data.body_inertia[i], data.body_velocity[i]));
-  }
+  for (size_t i = 0; i < model.links.size(); ++i)
+    energy += 0.5 * data.link_velocity[i].dot(multiply(data.link_inertia[i], data.link_velocity[i]));
   return energy;
 }
 
 double potentialEnergy(const MultibodyModel& model, const MultibodyData& data, const Eigen::Vector3d& gravity)
 {
   double energy = 0.0;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+  for (size_t i = 0; i < model.links.size(); ++i)
   {
-    const WorldInertia& inertia = data.body_inertia[i];
+    const WorldInertia& inertia = data.link_inertia[i];
     energy -= gravity.dot(inertia.mass * data.reference + inertia.moment);
   }
   return energy;

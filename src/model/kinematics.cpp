@@ -33,7 +33,7 @@ void setLinear(Matrix6Xd& subspace, int column, const Eigen::Vector3d& direction
   subspace.col(column).tail<3>().setZero();
 }
 
-/** Pose of the child body from the joint frame in the world, and the joint's columns of the motion subspace. */
+/** Pose of the child link from the joint frame in the world, and the joint's columns of the motion subspace. */
 void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Vector3d& origin, const double* q,
                MultibodyData& data, Eigen::Isometry3d& pose)
 {
@@ -86,7 +86,7 @@ void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Ve
   }
 }
 
-/** Inertia of a body in world axes about the reference (parallel axis theorem). */
+/** Inertia of a link in world axes about the reference (parallel axis theorem). */
 void moveInertia(const RigidInertia& inertia, const Eigen::Isometry3d& pose, const Eigen::Vector3d& reference,
                  WorldInertia& world)
 {
@@ -120,29 +120,21 @@ Eigen::VectorXd zeroPosition(const MultibodyModel& model)
 {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(model.nq);
   for (const Joint& joint : model.joints)
-  {
     if (joint.type == JointType::FLOATING)
-    {
       q[joint.q_index + 6] = 1.0;
-    }
-  }
   return q;
 }
 
 void forwardKinematics(const MultibodyModel& model, const VectorIn& q, MultibodyData& data)
 {
-  if (model.bodies.empty())
-  {
+  if (model.links.empty())
     return;
-  }
   const Joint& root = model.joints[0];
   // The root's own joint decides where the reference is before any lever arm is taken about it.
   data.reference = data.base_pose.translation();
   if (root.type == JointType::FLOATING)
-  {
     data.reference += data.base_pose.linear() * q.segment<3>(root.q_index);
-  }
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+  for (size_t i = 0; i < model.links.size(); ++i)
   {
     const Joint& joint = model.joints[i];
     const Eigen::Isometry3d& placement = i == 0 ? data.base_pose : joint.placement;
@@ -150,31 +142,27 @@ void forwardKinematics(const MultibodyModel& model, const VectorIn& q, Multibody
     Eigen::Vector3d origin = placement.translation();
     if (joint.parent >= 0)
     {
-      const Eigen::Isometry3d& parent = data.body_pose[joint.parent];
+      const Eigen::Isometry3d& parent = data.link_pose[joint.parent];
       frame = parent.linear() * frame;
       origin = parent.linear() * origin + parent.translation();
     }
-    moveJoint(joint, frame, origin, q.data() + joint.q_index, data, data.body_pose[i]);
-    moveInertia(model.bodies[i].inertia, data.body_pose[i], data.reference, data.body_inertia[i]);
+    moveJoint(joint, frame, origin, q.data() + joint.q_index, data, data.link_pose[i]);
+    moveInertia(model.links[i].inertia, data.link_pose[i], data.reference, data.link_inertia[i]);
   }
 }
 
 void forwardVelocities(const MultibodyModel& model, const VectorIn& v, MultibodyData& data)
 {
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+  for (size_t i = 0; i < model.links.size(); ++i)
   {
     const Joint& joint = model.joints[i];
     Vector6d velocity = Vector6d::Zero();
     if (joint.parent >= 0)
-    {
-      velocity = data.body_velocity[joint.parent];
-    }
+      velocity = data.link_velocity[joint.parent];
     const int end = joint.v_index + velocitySize(joint.type);
     for (int k = joint.v_index; k < end; ++k)
-    {
       velocity += v[k] * data.motion_subspace.col(k);
-    }
-    data.body_velocity[i] = velocity;
+    data.link_velocity[i] = velocity;
   }
 }
 
@@ -184,9 +172,7 @@ void integrate(const MultibodyModel& model, const VectorIn& q, const VectorIn& v
   {
     const int plain = joint.type == JointType::FLOATING ? 3 : positionSize(joint.type);
     for (int k = 0; k < plain; ++k)
-    {
       q_out[joint.q_index + k] = q[joint.q_index + k] + dt * v[joint.v_index + k];
-    }
     if (joint.type == JointType::FLOATING)
     {
       const Eigen::Quaterniond orientation(q.data() + joint.q_index + 3);
@@ -199,17 +185,17 @@ void integrate(const MultibodyModel& model, const VectorIn& q, const VectorIn& v
 
 Eigen::Isometry3d framePose(const MultibodyModel& model, const MultibodyData& data, int frame)
 {
-  return data.body_pose[model.frames[frame].body] * model.frames[frame].placement;
+  return data.link_pose[model.frames[frame].link] * model.frames[frame].placement;
 }
 
 Eigen::Vector3d centerOfMass(const MultibodyModel& model, const MultibodyData& data)
 {
   double mass = 0.0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+  for (size_t i = 0; i < model.links.size(); ++i)
   {
-    mass += data.body_inertia[i].mass;
-    moment += data.body_inertia[i].moment;
+    mass += data.link_inertia[i].mass;
+    moment += data.link_inertia[i].moment;
   }
   return mass > 0.0 ? Eigen::Vector3d(data.reference + moment / mass) : data.reference;
 }

@@ -22,18 +22,18 @@ Eigen::Vector3d principalMoments(const RigidInertia& inertia)
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia.rotational, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-std::string describe(const Link& body)
+std::string describe(const Link& link)
 {
-  const Eigen::Vector3d moments = principalMoments(body.inertia);
+  const Eigen::Vector3d moments = principalMoments(link.inertia);
   std::ostringstream text;
-  text << "link '" << body.name << "' (with the links fixed to it) has mass " << body.inertia.mass
+  text << "link '" << link.name << "' (with the links fixed to it) has mass " << link.inertia.mass
        << " kg and principal moments " << moments[0] << ", " << moments[1] << ", " << moments[2] << " kg m^2";
   return text.str();
 }
 
-bool isJudged(const MultibodyModel& model, std::size_t body)
+bool isJudged(const MultibodyModel& model, size_t link)
 {
-  return velocitySize(model.joints[body].type) > 0;
+  return velocitySize(model.joints[link].type) > 0;
 }
 
 /** @return coordinate whose inertia vanishes at q, -1 = the mass matrix is positive definite */
@@ -47,9 +47,7 @@ int singularCoordinate(const MultibodyModel& model, const Eigen::VectorXd& q)
   {
     const double root = data.mass_factor(k, k);
     if (!(root > 0.0) || root * root <= LEAST_PIVOT_RATIO * data.mass_matrix(k, k))
-    {
       return k;
-    }
   }
   return -1;
 }
@@ -61,12 +59,8 @@ Eigen::VectorXd genericPosition(const MultibodyModel& model)
   for (const Joint& joint : model.joints)
   {
     if (joint.type != JointType::FLOATING)
-    {
       for (int k = joint.q_index; k < joint.q_index + positionSize(joint.type); ++k)
-      {
         q[k] = 0.7 + 0.3 * std::sin(1.7 * k);
-      }
-    }
   }
   return q;
 }
@@ -75,9 +69,7 @@ std::string join(const std::vector<std::string>& names)
 {
   std::string text;
   for (const std::string& name : names)
-  {
     text += (text.empty() ? "'" : ", '") + name + "'";
-  }
   return text;
 }
 }  // namespace
@@ -98,9 +90,7 @@ RigidInertia combine(const std::vector<RigidInertia>& parts)
     moment += part.mass * part.center;
   }
   if (whole.mass > 0.0)
-  {
     whole.center = moment / whole.mass;
-  }
   for (const RigidInertia& part : parts)
   {
     const Eigen::Vector3d arm = part.center - whole.center;
@@ -114,31 +104,21 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
 {
   std::vector<std::string> weak;
   std::vector<std::string> impossible;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+  for (size_t i = 0; i < model.links.size(); ++i)
   {
     if (!isJudged(model, i))
-    {
       continue;
-    }
-    const Link& body = model.bodies[i];
-    if (!body.inertia.rotational.allFinite() || !body.inertia.center.allFinite() || !std::isfinite(body.inertia.mass))
-    {
-      failAt(source, 0, "link '" + body.name + "' (with the links fixed to it): mass or inertia overflows");
-    }
-    const Eigen::Vector3d moments = principalMoments(body.inertia);
+    const Link& link = model.links[i];
+    if (!link.inertia.rotational.allFinite() || !link.inertia.center.allFinite() || !std::isfinite(link.inertia.mass))
+      failAt(source, 0, "link '" + link.name + "' (with the links fixed to it): mass or inertia overflows");
+    const Eigen::Vector3d moments = principalMoments(link.inertia);
     const double round_off = 1e-12 * moments.cwiseAbs().maxCoeff();
     if (moments[0] < -round_off)
-    {
-      failAt(source, 0, describe(body) + ": expected a positive definite inertia matrix");
-    }
-    if (body.inertia.mass <= 0.0 || moments[0] <= round_off)
-    {
-      weak.push_back(body.name);
-    }
+      failAt(source, 0, describe(link) + ": expected a positive definite inertia matrix");
+    if (link.inertia.mass <= 0.0 || moments[0] <= round_off)
+      weak.push_back(link.name);
     else if (moments[0] + moments[1] < (1.0 - 1e-6) * moments[2])
-    {
-      impossible.push_back(body.name);
-    }
+      impossible.push_back(link.name);
   }
   std::vector<std::string> warnings;
   if (!impossible.empty())
@@ -148,24 +128,20 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
         join(impossible));
   }
   if (weak.empty())
-  {
     return warnings;
-  }
   const int coordinate = singularCoordinate(model, genericPosition(model));
   if (coordinate >= 0)
   {
-    const int body = model.dof_body[coordinate];
-    const Joint& joint = model.joints[body];
+    const int link = model.dof_link[coordinate];
+    const Joint& joint = model.joints[link];
     failAt(source, 0,
-           describe(model.bodies[body]) + ", and nothing it carries makes up for it: a " +
+           describe(model.links[link]) + ", and nothing it carries makes up for it: a " +
                (joint.name.empty() ? "floating base" : "moving link (joint '" + joint.name + "')") +
                " needs an <inertial>, or a fixed base or joint");
   }
   warnings.push_back("without mass or with a singular inertia matrix, held up by what it carries: " + join(weak));
   if (singularCoordinate(model, zeroPosition(model)) >= 0)
-  {
     warnings.push_back("the mass matrix is singular at the zero position, because of " + join(weak));
-  }
   return warnings;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file lumped_inertia.h
- * @brief Inertia of links rigidly joined, and whether the moving bodies' inertia makes sense. Private to model/.
+ * @brief Inertia of links rigidly joined, and whether the moving links' inertia makes sense. Private to model/.
  */
 #include <string>
 #include <vector>
@@ -20,10 +20,10 @@ RigidInertia transform(const RigidInertia& inertia, const Eigen::Isometry3d& pla
 RigidInertia combine(const std::vector<RigidInertia>& parts);
 
 /**
- * @brief Judges the moving bodies after lumping.
- * A body with mass and three positive principal moments is good. Without, it may still move with what it carries: then
+ * @brief Judges the moving links after lumping.
+ * A link with mass and three positive principal moments is good. Without, it may still move with what it carries: then
  * the mass matrix decides, which must be positive definite (two configurations; the least articulated inertia
- * along a coordinate at least 1e-10 of the composite inertia). The body of a FIXED base is not judged.
+ * along a coordinate at least 1e-10 of the composite inertia). The link of a FIXED base is not judged.
  * @throws ModelError naming source, link and values
  * @return warnings
  */

@@ -20,9 +20,7 @@ public:
     {
       const int begin = run_[end];
       for (int i = end; i >= begin; --i)
-      {
         visit(i);
-      }
       end = parent_[begin];
     }
   }
@@ -36,12 +34,10 @@ private:
 void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
 {
   const AncestorRuns chain(model);
-  const int bodies = static_cast<int>(model.bodies.size());
-  for (int i = 0; i < bodies; ++i)
-  {
-    data.composite_inertia[i] = data.body_inertia[i];
-  }
-  for (int i = bodies - 1; i >= 0; --i)
+  const int links = static_cast<int>(model.links.size());
+  for (int i = 0; i < links; ++i)
+    data.composite_inertia[i] = data.link_inertia[i];
+  for (int i = links - 1; i >= 0; --i)
   {
     const Joint& joint = model.joints[i];
     const WorldInertia& inertia = data.composite_inertia[i];
@@ -82,20 +78,19 @@ bool factorizeMassMatrix(const MultibodyModel& model, const VectorIn& extra, Mul
   {
     const double pivot = factor[k + k * stride];
     if (!(pivot > 0.0))
-    {
       return false;
-    }
     const double root = std::sqrt(pivot);
     const double inverse = 1.0 / root;
     factor[k + k * stride] = root;
     data.factor_inverse[k] = inverse;
     const int parent = model.dof_parent[k];
-    chain.forEach(parent,
-                  [&](int i)
-                  {
-                    row[i] = factor[k + i * stride] * inverse;
-                    factor[k + i * stride] = row[i];
-                  });
+    chain.forEach(
+        parent,
+        [&](int i)
+        {
+          row[i] = factor[k + i * stride] * inverse;
+          factor[k + i * stride] = row[i];
+        });
     chain.forEach(parent,
                   [&](int i)
                   {

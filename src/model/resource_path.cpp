@@ -31,9 +31,7 @@ std::string findPackage(const std::string& name)
   std::string& folder = found[{environment("ROS_PACKAGE_PATH"), name}];
   std::error_code ignored;
   if (!folder.empty() && fs::is_directory(folder, ignored))
-  {
     return folder;
-  }
   folder.clear();
   rospack::Rospack rospack;
   rospack.setQuiet(true);
@@ -46,9 +44,7 @@ std::string findPackage(const std::string& name)
     {
       rospack.crawl(search_path, true);
       if (!rospack.find(name, folder))
-      {
         folder.clear();
-      }
     }
   }
   return folder;
@@ -63,7 +59,7 @@ bool startsWith(const std::string& text, const std::string& prefix)
 std::string decodePercent(const std::string& text)
 {
   std::string decoded;
-  for (std::size_t i = 0; i < text.size(); ++i)
+  for (size_t i = 0; i < text.size(); ++i)
   {
     if (text[i] == '%' && i + 2 < text.size() && std::isxdigit(static_cast<unsigned char>(text[i + 1])) != 0 &&
         std::isxdigit(static_cast<unsigned char>(text[i + 2])) != 0)
@@ -85,7 +81,7 @@ fs::path locate(const std::string& uri, const std::string& folder)
   static const std::string FILE = "file://";
   if (startsWith(uri, PACKAGE))
   {
-    const std::size_t slash = uri.find('/', PACKAGE.size());
+    const size_t slash = uri.find('/', PACKAGE.size());
     const std::string name = uri.substr(PACKAGE.size(), slash == std::string::npos ? slash : slash - PACKAGE.size());
     const std::string package = findPackage(name);
     if (package.empty())
@@ -105,9 +101,7 @@ fs::path locate(const std::string& uri, const std::string& folder)
     return fs::exists(plain, ignored) ? plain : fs::path(decodePercent(path));
   }
   if (uri.find("://") != std::string::npos)
-  {
     throw ModelError("'" + uri + "': expected package://, file:// or a path");
-  }
   return fs::path(folder) / uri;  // an absolute uri replaces the folder
 }
 }  // namespace

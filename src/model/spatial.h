@@ -12,7 +12,7 @@
 
 namespace frictional_contact_sim
 {
-/** @brief Rate of the motion vector `motion` that is fixed in a body of velocity `velocity`. */
+/** @brief Rate of the motion vector `motion` that is fixed in a link of velocity `velocity`. */
 inline Vector6d crossMotion(const Vector6d& velocity, const Vector6d& motion)
 {
   const Eigen::Vector3d angular = velocity.tail<3>();
@@ -22,7 +22,7 @@ inline Vector6d crossMotion(const Vector6d& velocity, const Vector6d& motion)
   return rate;
 }
 
-/** @brief Rate of the force vector (force; torque) or momentum that is fixed in a body of velocity `velocity`. */
+/** @brief Rate of the force vector (force; torque) or momentum that is fixed in a link of velocity `velocity`. */
 inline Vector6d crossForce(const Vector6d& velocity, const Vector6d& force)
 {
   const Eigen::Vector3d angular = velocity.tail<3>();
@@ -32,7 +32,7 @@ inline Vector6d crossForce(const Vector6d& velocity, const Vector6d& force)
   return rate;
 }
 
-/** @brief Momentum (linear; angular about the reference) of a body moving with `velocity`; force of an acceleration. */
+/** @brief Momentum (linear; angular about the reference) of a link moving with `velocity`; force of an acceleration. */
 inline Vector6d multiply(const WorldInertia& inertia, const Vector6d& velocity)
 {
   const Eigen::Vector3d linear = velocity.head<3>();

@@ -21,9 +21,7 @@ template <typename Visitor>
 void forEachChild(XMLElement& parent, const char* name, const Visitor& visit)
 {
   for (XMLElement* child = parent.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name))
-  {
     visit(*child);
-  }
 }
 
 double numberAttribute(const XMLElement& element, const char* name, double fallback)
@@ -31,9 +29,7 @@ double numberAttribute(const XMLElement& element, const char* name, double fallb
   const char* text = element.Attribute(name);
   double value = fallback;
   if (text != nullptr)
-  {
     parseNumber(text, value);  // the schema has checked it
-  }
   return value;
 }
 
@@ -45,11 +41,9 @@ std::map<std::string, XMLElement*> collectNames(XMLElement& robot, const char* k
                {
                  const auto [place, inserted] = found.emplace(element.Attribute("name"), &element);
                  if (!inserted)
-                 {
                    failAt(source, element.GetLineNum(),
                           std::string("a second <") + kind + "> is named '" + place->first +
                               "', the first is at line " + std::to_string(place->second->GetLineNum()));
-                 }
                });
   return found;
 }
@@ -66,12 +60,8 @@ void checkTree(const Names& links, const Names& joints, const std::string& sourc
     const std::string parent = joint->FirstChildElement("parent")->Attribute("link");
     const std::string child = joint->FirstChildElement("child")->Attribute("link");
     for (const std::string& link : {parent, child})
-    {
       if (links.count(link) == 0)
-      {
         failAt(source, joint->GetLineNum(), "joint '" + name + "': there is no link '" + link + "'");
-      }
-    }
     const auto [place, inserted] = parent_joint.emplace(child, joint);
     if (!inserted)
     {
@@ -94,33 +84,23 @@ void checkTree(const Names& links, const Names& joints, const std::string& sourc
       reached.push_back(name);
     }
   }
-  for (std::size_t i = 0; i < reached.size(); ++i)
+  for (size_t i = 0; i < reached.size(); ++i)
   {
     const auto [begin, end] = children.equal_range(reached[i]);
     for (auto child = begin; child != end; ++child)
-    {
       reached.push_back(child->second);
-    }
   }
   const std::set<std::string> connected(reached.begin(), reached.end());
   for (const auto& [name, link] : links)
-  {
     if (connected.count(name) == 0)
-    {
       failAt(source, link->GetLineNum(), "link '" + name + "' is part of a cycle of joints: expected a tree");
-    }
-  }
 }
 
 bool isType(const XMLElement& joint, std::initializer_list<const char*> types)
 {
   for (const char* type : types)
-  {
     if (std::strcmp(joint.Attribute("type"), type) == 0)
-    {
       return true;
-    }
-  }
   return false;
 }
 
@@ -145,30 +125,22 @@ void checkLimit(XMLElement& joint, const std::string& label, const std::string& 
                (limit->Attribute("upper") == nullptr ? "0 (the default)" : limit->Attribute("upper")));
   }
   if (isType(joint, {"revolute", "prismatic"}) && lower == upper)
-  {
     omissions.addNote("<limit> with lower = upper: the joint cannot move", label);
-  }
   if (isType(joint, {"continuous"}) && (lower != 0.0 || upper != 0.0))
-  {
     omissions.add("lower and upper of <limit> in a continuous joint", label);
-  }
   if (isType(joint, {"planar", "floating"}))
-  {
     omissions.add(std::string("<limit> in a ") + joint.Attribute("type") + " joint", label);
-  }
 }
 
 /** What a mimic follows must exist and move; a follower must not follow itself, not even through others. */
 void checkMimic(const XMLElement& joint, const Names& joints, const std::string& label, const std::string& source)
 {
   const XMLElement* follower = &joint;
-  for (std::size_t steps = 0; steps <= joints.size(); ++steps)
+  for (size_t steps = 0; steps <= joints.size(); ++steps)
   {
     const XMLElement* mimic = follower->FirstChildElement("mimic");
     if (mimic == nullptr)
-    {
       return;
-    }
     const auto leader = joints.find(mimic->Attribute("joint"));
     if (leader == joints.end() || !isType(*leader->second, {"revolute", "continuous", "prismatic"}) ||
         !isType(joint, {"revolute", "continuous", "prismatic"}))
@@ -196,26 +168,18 @@ void checkJoint(XMLElement& joint, const Names& joints, const std::string& sourc
     // Nothing moves: what else is said about it (limits, an axis of zero) is without effect, and urdfdom need not see
     // it.
     for (const char* name : {"axis", "limit", "dynamics", "mimic"})
-    {
       while (XMLElement* element = joint.FirstChildElement(name))
-      {
         joint.DeleteChild(element);
-      }
-    }
     return;
   }
   checkLimit(joint, label, source, omissions);
   checkMimic(joint, joints, label, source);
   const XMLElement* axis = joint.FirstChildElement("axis");
   if (axis != nullptr && largestMagnitude(axis->Attribute("xyz")) < LEAST_AXIS && !isType(joint, {"floating"}))
-  {
     failAt(source, axis->GetLineNum(), label + ": <axis> xyz = '" + axis->Attribute("xyz") + "', expected a direction");
-  }
   XMLElement* dynamics = joint.FirstChildElement("dynamics");
   if (dynamics != nullptr && dynamics->Attribute("damping") == nullptr && dynamics->Attribute("friction") == nullptr)
-  {
     joint.DeleteChild(dynamics);  // urdfdom takes an empty one for an error
-  }
 }
 
 /** Notes capsules and writes them as cylinders; leaves out collisions without a shape that is known. */
@@ -290,18 +254,14 @@ void readGazebo(XMLElement& gazebo, const Names& links, const Names& joints, con
     const std::string kind = child->Name();
     const bool friction = links.count(reference) > 0 && (kind == "mu1" || kind == "mu2");
     if (!friction)
-    {
       omissions.add("<" + kind + "> in <gazebo>", label);
-    }
   }
 }
 
 XMLElement& parseXml(const std::string& xml, const std::string& source, tinyxml2::XMLDocument& parsed)
 {
   if (parsed.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
-  {
     failAt(source, parsed.ErrorLineNum(), std::string("broken XML (") + parsed.ErrorName() + "), expected a URDF");
-  }
   XMLElement* robot = parsed.RootElement();
   if (robot == nullptr || std::strcmp(robot->Name(), "robot") != 0)
   {
@@ -333,9 +293,7 @@ UrdfDocument readDocument(const std::string& xml, const std::string& source)
                  document.joint_order.emplace(joint.Attribute("name"), static_cast<int>(document.joint_order.size()));
                });
   for (const auto& [name, link] : links)
-  {
     readCollisions(*link, name, document, omissions);
-  }
   while (XMLElement* gazebo = robot.FirstChildElement("gazebo"))
   {
     readGazebo(*gazebo, links, joints, source, document, omissions);

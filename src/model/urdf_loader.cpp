@@ -24,9 +24,7 @@ public:
   void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override
   {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && text_.empty())
-    {
       text_ = text;
-    }
   }
   const std::string& text() const { return text_; }
 
@@ -55,9 +53,7 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& text, const std::s
   }
   console_bridge::useOutputHandler(previous);
   if (!model || !model->getRoot())
-  {
     failAt(source, 0, "urdfdom: " + (reason.empty() ? "not a URDF" : reason));
-  }
   return model;
 }
 
@@ -115,13 +111,11 @@ public:
     const bool fixed = base == BaseType::FIXED || (base == BaseType::AUTO && root.name == "world");
     Joint joint;
     joint.type = fixed ? JointType::FIXED : JointType::FLOATING;
-    addBody(root, joint);
+    addLink(root, joint);
     addFrame(root, 0, Eigen::Isometry3d::Identity());
     addDescendants(root);
-    for (std::size_t i = 0; i < model_.bodies.size(); ++i)
-    {
-      model_.bodies[i].inertia = combine(parts_[i]);
-    }
+    for (size_t i = 0; i < model_.links.size(); ++i)
+      model_.links[i].inertia = combine(parts_[i]);
     addMimics();
     finalize(model_);
     return model_;
@@ -132,9 +126,7 @@ private:
   {
     std::vector<const urdf::Joint*> joints;
     for (const urdf::JointSharedPtr& joint : link.child_joints)
-    {
       joints.push_back(joint.get());
-    }
     std::sort(joints.begin(), joints.end(),
               [this](const urdf::Joint* a, const urdf::Joint* b)
               { return document_.joint_order.at(a->name) < document_.joint_order.at(b->name); });
@@ -155,12 +147,12 @@ private:
       const Eigen::Isometry3d placement = parent.placement * toIsometry(joint.parent_to_joint_origin_transform);
       if (joint.type == urdf::Joint::FIXED)
       {
-        addFrame(child, parent.body, placement);
+        addFrame(child, parent.link, placement);
       }
       else
       {
-        addBody(child, makeJoint(joint, parent.body, placement));
-        addFrame(child, static_cast<int>(model_.bodies.size()) - 1, Eigen::Isometry3d::Identity());
+        addLink(child, makeJoint(joint, parent.link, placement));
+        addFrame(child, static_cast<int>(model_.links.size()) - 1, Eigen::Isometry3d::Identity());
       }
       std::vector<const urdf::Joint*> next = childJoints(child);
       waiting.insert(waiting.end(), next.rbegin(), next.rend());
@@ -175,9 +167,7 @@ private:
     joint.parent = parent;
     joint.placement = placement;
     if (joint.type != JointType::FLOATING)
-    {
       joint.axis = Eigen::Vector3d(urdf_joint.axis.x, urdf_joint.axis.y, urdf_joint.axis.z).normalized();
-    }
     const bool one_coordinate = velocitySize(joint.type) == 1;
     if (urdf_joint.limits && one_coordinate)
     {
@@ -197,24 +187,20 @@ private:
     return joint;
   }
 
-  void addBody(const urdf::Link& link, const Joint& joint)
+  void addLink(const urdf::Link& link, const Joint& joint)
   {
-    model_.bodies.push_back({link.name, RigidInertia()});
+    model_.links.push_back({link.name, RigidInertia()});
     model_.joints.push_back(joint);
     parts_.emplace_back();
   }
 
-  void addFrame(const urdf::Link& link, int body, const Eigen::Isometry3d& placement)
+  void addFrame(const urdf::Link& link, int carrier, const Eigen::Isometry3d& placement)
   {
-    model_.frames.push_back({link.name, body, placement});
+    model_.frames.push_back({link.name, carrier, placement});
     if (link.inertial)
-    {
-      parts_[body].push_back(transform(toInertia(*link.inertial), placement));
-    }
-    for (std::size_t k = 0; k < link.collision_array.size(); ++k)
-    {
+      parts_[carrier].push_back(transform(toInertia(*link.inertial), placement));
+    for (size_t k = 0; k < link.collision_array.size(); ++k)
       addShape(link, static_cast<int>(k));
-    }
   }
 
   void addShape(const urdf::Link& link, int place)
@@ -223,15 +209,13 @@ private:
     const Frame& frame = model_.frames.back();
     CollisionShape shape{collision.name.empty() ? link.name + "_collision_" + std::to_string(place) : collision.name,
                          static_cast<int>(model_.frames.size()) - 1,
-                         frame.body,
+                         frame.link,
                          toGeometry(link, place),
                          frame.placement * toIsometry(collision.origin),
                          -1.0};
     const auto friction = document_.friction.find(link.name);
     if (friction != document_.friction.end())
-    {
       shape.friction = friction->second;
-    }
     model_.shapes.push_back(shape);
   }
 
@@ -251,9 +235,7 @@ private:
       {
         const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
         if (document_.capsules.count({link.name, place}) > 0)
-        {
           return Capsule{cylinder.radius, 0.5 * cylinder.length};
-        }
         return Cylinder{cylinder.radius, 0.5 * cylinder.length};
       }
       case urdf::Geometry::MESH:
@@ -293,7 +275,7 @@ private:
   const urdf::ModelInterface& urdf_;
   const std::string& source_;
   MultibodyModel model_;
-  std::vector<std::vector<RigidInertia>> parts_;  ///< bodies: inertia of their links in the body frame
+  std::vector<std::vector<RigidInertia>> parts_;  ///< links: inertia of the URDF links they carry, in the link frame
 };
 }  // namespace
 
@@ -314,9 +296,7 @@ LoadedModel loadUrdfFile(const std::string& path, BaseType base)
   std::ifstream file(path);
   std::error_code ignored;
   if (!file || std::filesystem::is_directory(path, ignored))
-  {
     failAt(path, 0, "cannot be read, expected a URDF file");
-  }
   std::ostringstream content;
   content << file.rdbuf();
   return loadUrdf(content.str(), path, base);
@@ -325,17 +305,11 @@ LoadedModel loadUrdfFile(const std::string& path, BaseType base)
 BaseType parseBaseType(const std::string& text)
 {
   if (text == "auto")
-  {
     return BaseType::AUTO;
-  }
   if (text == "floating")
-  {
     return BaseType::FLOATING;
-  }
   if (text == "fixed")
-  {
     return BaseType::FIXED;
-  }
   throw std::invalid_argument("base '" + text + "', expected auto, floating or fixed");
 }
 

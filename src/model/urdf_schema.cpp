@@ -157,10 +157,10 @@ std::vector<std::string> splitWords(const std::string& text)
 {
   static const char* const BLANKS = " \t\r\n";
   std::vector<std::string> words;
-  std::size_t begin = text.find_first_not_of(BLANKS);
+  size_t begin = text.find_first_not_of(BLANKS);
   while (begin != std::string::npos)
   {
-    const std::size_t end = text.find_first_of(BLANKS, begin);
+    const size_t end = text.find_first_of(BLANKS, begin);
     words.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
     begin = text.find_first_not_of(BLANKS, end);
   }
@@ -195,9 +195,7 @@ void checkAttributes(XMLElement& element, const std::string& source, OmissionTal
   for (const AttributeRule& rule : ATTRIBUTES)
   {
     if (!same(rule.element, element.Name()))
-    {
       continue;
-    }
     const char* text = element.Attribute(rule.name);
     if (rule.need == Need::REQUIRED && (text == nullptr || *text == '\0'))
     {
@@ -205,9 +203,7 @@ void checkAttributes(XMLElement& element, const std::string& source, OmissionTal
              describeOwner(element) + ": " + tag(element) + " has no attribute '" + rule.name + "'");
     }
     if (text != nullptr && rule.numbers > 0)
-    {
       checkNumbers(element, rule, source);
-    }
   }
   for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
        attribute = attribute->Next())
@@ -217,9 +213,7 @@ void checkAttributes(XMLElement& element, const std::string& source, OmissionTal
                                      return same(rule.element, element.Name()) && same(rule.name, attribute->Name());
                                    });
     if (!known && std::strncmp(attribute->Name(), "xmlns", 5) != 0)
-    {
       omissions.add("attribute '" + std::string(attribute->Name()) + "' of " + tag(element), describeOwner(element));
-    }
   }
 }
 
@@ -264,19 +258,13 @@ void applyToElement(XMLElement& element, const std::string& source, OmissionTall
     if (rule != nullptr && (first || rule->repeated))
     {
       if (!same(child->Name(), "gazebo"))
-      {
         applyToElement(*child, source, omissions);
-      }
       continue;
     }
     if (rule != nullptr)
-    {
       omissions.add("a second " + tag(*child) + " in " + tag(element), describeOwner(element));
-    }
     else if (!drawn_only)
-    {
       omissions.add(tag(*child) + " in " + tag(element), describeOwner(*child));
-    }
     element.DeleteChild(child);
   }
   checkRequiredChildren(element, source);

@@ -23,7 +23,7 @@ CriterionProgram::CriterionProgram(const ContactKinematics& kinematics, const Cr
 
 void CriterionProgram::addFacet(int cone, const Eigen::Vector2d& direction, double slope)
 {
-  const DualCone& dual = kinematics_.cones[static_cast<std::size_t>(cone)];
+  const DualCone& dual = kinematics_.cones[static_cast<size_t>(cone)];
   std::vector<int> columns = {first_u_ + dual.row, s_};
   std::vector<double> values = {1.0, -1.0};
   for (int k = 0; k + 1 < dual.dimension && slope != 0.0; ++k)
@@ -50,7 +50,7 @@ void CriterionProgram::multipliers(Eigen::VectorXd& r, Eigen::VectorXd& lambda) 
   r.setZero(kinematics_.H.rows());
   for (const Facet& facet : facets_)
   {
-    const DualCone& cone = kinematics_.cones[static_cast<std::size_t>(facet.cone)];
+    const DualCone& cone = kinematics_.cones[static_cast<size_t>(facet.cone)];
     const double price = std::max(0.0, prices[facet.row]);
     r[cone.row] += price;
     r.segment(cone.row + 1, cone.dimension - 1) -= price * facet.slope.head(cone.dimension - 1);

@@ -7,8 +7,8 @@ double DelassusOperator::storedShare(const std::vector<int>& blocks, const std::
 {
   double entries = 0.0;
   for (const int i : blocks)
-    for (int p = row_begin_[static_cast<std::size_t>(i)]; p < row_begin_[static_cast<std::size_t>(i) + 1]; ++p)
-      if (position[static_cast<std::size_t>(blockOf(columns_[static_cast<std::size_t>(p)]))] >= 0)
+    for (int p = row_begin_[static_cast<size_t>(i)]; p < row_begin_[static_cast<size_t>(i) + 1]; ++p)
+      if (position[static_cast<size_t>(blockOf(columns_[static_cast<size_t>(p)]))] >= 0)
         entries += dimension(i);
   return entries / (static_cast<double>(rows) * rows);
 }
@@ -16,24 +16,24 @@ double DelassusOperator::storedShare(const std::vector<int>& blocks, const std::
 void DelassusOperator::assignSparseBlocks(const DelassusOperator& whole, const std::vector<int>& blocks,
                                           const std::vector<int>& position)
 {
-  const std::size_t count = blocks.size();
+  const size_t count = blocks.size();
   row_begin_.resize(count + 1);
   value_begin_.resize(count + 1);
   diagonal_.resize(count);
   columns_.clear();
   values_.clear();
-  for (std::size_t k = 0; k < count; ++k)
+  for (size_t k = 0; k < count; ++k)
   {
     row_begin_[k] = static_cast<int>(columns_.size());
     value_begin_[k] = static_cast<int>(values_.size());
-    const auto row = static_cast<std::size_t>(blocks[k]);
+    const auto row = static_cast<size_t>(blocks[k]);
     const int d = dimension(static_cast<int>(k));
     const double* value = whole.values_.data() + whole.value_begin_[row];
     for (int p = whole.row_begin_[row]; p < whole.row_begin_[row + 1]; ++p, value += d)
     {
-      const int column = whole.columns_[static_cast<std::size_t>(p)];
+      const int column = whole.columns_[static_cast<size_t>(p)];
       const int j = whole.blockOf(column);
-      const int place = position[static_cast<std::size_t>(j)];
+      const int place = position[static_cast<size_t>(j)];
       if (place < 0)
         continue;
       if (column == whole.offset(blocks[k]))
@@ -69,12 +69,12 @@ void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::ve
   resizeDense(laws);
   if (!whole.is_dense_)
     dense_.setZero();
-  for (std::size_t k = 0; k < blocks.size(); ++k)
+  for (size_t k = 0; k < blocks.size(); ++k)
   {
     const int d = dimension(static_cast<int>(k));
     const int first = offset(static_cast<int>(k));
     if (whole.is_dense_)
-      for (std::size_t l = 0; l < blocks.size(); ++l)
+      for (size_t l = 0; l < blocks.size(); ++l)
         dense_.block(first, offset(static_cast<int>(l)), d, dimension(static_cast<int>(l))) =
             whole.dense_.block(whole.offset(blocks[k]), whole.offset(blocks[l]), d, dimension(static_cast<int>(l)));
     else
@@ -82,7 +82,7 @@ void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::ve
                      [&](int column, const double* value, int stride)
                      {
                        const int j = whole.blockOf(column);
-                       const int place = position[static_cast<std::size_t>(j)];
+                       const int place = position[static_cast<size_t>(j)];
                        if (place < 0)
                          return;
                        for (int a = 0; a < d; ++a)
@@ -93,14 +93,14 @@ void DelassusOperator::assignBlocks(const DelassusOperator& whole, const std::ve
 
 void DelassusOperator::assignHalfBlocks(const DelassusOperator& whole, const std::vector<int>& blocks)
 {
-  if (place_.size() != static_cast<std::size_t>(whole.half_.size()))
-    place_.assign(static_cast<std::size_t>(whole.half_.size()), -1);
+  if (place_.size() != static_cast<size_t>(whole.half_.size()))
+    place_.assign(static_cast<size_t>(whole.half_.size()), -1);
   row_begin_.resize(blocks.size() + 1);
   value_begin_.resize(blocks.size() + 1);
   columns_.clear();
   values_.clear();
   int count = 0;
-  for (std::size_t k = 0; k < blocks.size(); ++k)
+  for (size_t k = 0; k < blocks.size(); ++k)
   {
     row_begin_[k] = static_cast<int>(columns_.size());
     value_begin_[k] = static_cast<int>(values_.size());
@@ -108,7 +108,7 @@ void DelassusOperator::assignHalfBlocks(const DelassusOperator& whole, const std
     whole.visitHalfRow(blocks[k],
                        [&](int column, const double* value, int)
                        {
-                         int& place = place_[static_cast<std::size_t>(column)];
+                         int& place = place_[static_cast<size_t>(column)];
                          if (place < 0)
                            place = count++;
                          columns_.push_back(place);
@@ -118,7 +118,7 @@ void DelassusOperator::assignHalfBlocks(const DelassusOperator& whole, const std
   row_begin_[blocks.size()] = static_cast<int>(columns_.size());
   value_begin_[blocks.size()] = static_cast<int>(values_.size());
   for (const int i : blocks)
-    whole.visitHalfRow(i, [&](int column, const double*, int) { place_[static_cast<std::size_t>(column)] = -1; });
+    whole.visitHalfRow(i, [&](int column, const double*, int) { place_[static_cast<size_t>(column)] = -1; });
   half_.resize(count);
   computeDiagonal();
 }

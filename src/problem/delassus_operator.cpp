@@ -66,9 +66,9 @@ void DelassusOperator::setBlocks(const std::vector<Law>& laws)
 {
   offsets_.resize(laws.size() + 1);
   offsets_[0] = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
     offsets_[i + 1] = offsets_[i] + laws[i].dimension();
-  block_of_row_.resize(static_cast<std::size_t>(rows()));
+  block_of_row_.resize(static_cast<size_t>(rows()));
   for (int i = 0; i < blocks(); ++i)
     std::fill(block_of_row_.begin() + offset(i), block_of_row_.begin() + offset(i + 1), i);
 }
@@ -86,12 +86,12 @@ void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vec
   is_dense_ = is_matrix_free_ = false;
   dense_.resize(0, 0);
   setBlocks(laws);
-  const std::size_t count = laws.size();
+  const size_t count = laws.size();
   row_begin_.assign(count + 1, 0);
   value_begin_.assign(count + 1, 0);
   diagonal_.assign(count, 0);
   columns_.clear();
-  for (std::size_t i = 0; i < count; ++i)
+  for (size_t i = 0; i < count; ++i)
   {
     const int d = laws[i].dimension();
     for (const int j : block_columns[i])
@@ -104,12 +104,12 @@ void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vec
     row_begin_[i + 1] = static_cast<int>(columns_.size());
     value_begin_[i + 1] = value_begin_[i] + d * (row_begin_[i + 1] - row_begin_[i]);
   }
-  values_.assign(static_cast<std::size_t>(value_begin_[count]), 0.0);
+  values_.assign(static_cast<size_t>(value_begin_[count]), 0.0);
 }
 
 double* DelassusOperator::block(int i, int j)
 {
-  const auto row = static_cast<std::size_t>(i);
+  const auto row = static_cast<size_t>(i);
   const auto first = columns_.begin() + row_begin_[row];
   const auto last = columns_.begin() + row_begin_[row + 1];
   const auto found = std::lower_bound(first, last, offset(j));
@@ -143,7 +143,7 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
   std::vector<std::vector<int>> block_columns(laws.size());
   for (int i = 0; i < blocks(); ++i)
   {
-    std::vector<int>& touched = block_columns[static_cast<std::size_t>(i)];
+    std::vector<int>& touched = block_columns[static_cast<size_t>(i)];
     touched.push_back(i);
     for (int row = offset(i); row < offset(i + 1); ++row)
       for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
@@ -177,7 +177,7 @@ void DelassusOperator::assignHalf(const std::vector<Law>& laws, const std::vecto
   columns_ = touched;
   value_begin_.resize(laws.size() + 1);
   value_begin_[0] = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
     value_begin_[i + 1] = value_begin_[i] + laws[i].dimension() * (touched_begin[i + 1] - touched_begin[i]);
   values_ = values;
   half_.resize(columns);
@@ -186,18 +186,18 @@ void DelassusOperator::assignHalf(const std::vector<Law>& laws, const std::vecto
 
 void DelassusOperator::computeDiagonal()
 {
-  diagonal_.resize(static_cast<std::size_t>(blocks()));
-  std::size_t next = static_cast<std::size_t>(value_begin_.back());
+  diagonal_.resize(static_cast<size_t>(blocks()));
+  size_t next = static_cast<size_t>(value_begin_.back());
   for (int i = 0; i < blocks(); ++i)
   {
-    diagonal_[static_cast<std::size_t>(i)] = static_cast<int>(next);
-    next += static_cast<std::size_t>(dimension(i) * dimension(i));
+    diagonal_[static_cast<size_t>(i)] = static_cast<int>(next);
+    next += static_cast<size_t>(dimension(i) * dimension(i));
   }
   values_.resize(next);
   for (int i = 0; i < blocks(); ++i)
   {
     const int d = dimension(i);
-    double* target = values_.data() + diagonal_[static_cast<std::size_t>(i)];
+    double* target = values_.data() + diagonal_[static_cast<size_t>(i)];
     std::fill(target, target + d * d, 0.0);
     visitHalfRow(i,
                  [&](int, const double* value, int)
@@ -213,10 +213,10 @@ template <int D>
 void DelassusOperator::addHalfProduct(int i, const Eigen::VectorXd& x) const
 {
   const Vector<D> impulse = x.segment<D>(offset(i));
-  const auto row = static_cast<std::size_t>(i);
+  const auto row = static_cast<size_t>(i);
   const double* value = values_.data() + value_begin_[row];
   for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += D)
-    half_[columns_[static_cast<std::size_t>(k)]] += Eigen::Map<const Vector<D>>(value).dot(impulse);
+    half_[columns_[static_cast<size_t>(k)]] += Eigen::Map<const Vector<D>>(value).dot(impulse);
 }
 
 void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
@@ -231,25 +231,21 @@ void DelassusOperator::apply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
   {
     half_.setZero();
     for (int i = 0; i < blocks(); ++i)
-    {
       if (dimension(i) == 3)
         addHalfProduct<3>(i, x);
       else if (dimension(i) == 2)
         addHalfProduct<2>(i, x);
       else
         addHalfProduct<1>(i, x);
-    }
   }
   const Eigen::VectorXd& factor = is_matrix_free_ ? half_ : x;
   for (int i = 0; i < blocks(); ++i)
-  {
     if (dimension(i) == 3)
       y.segment<3>(offset(i)) = storedProduct<3>(i, factor);
     else if (dimension(i) == 2)
       y.segment<2>(offset(i)) = storedProduct<2>(i, factor);
     else
       y.segment<1>(offset(i)) = storedProduct<1>(i, factor);
-  }
 }
 
 void DelassusOperator::applyTransposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const

@@ -11,8 +11,8 @@ namespace
 {
 bool samePattern(const SparseRows& matrix, const std::vector<int>& outer, const std::vector<int>& inner)
 {
-  return outer.size() == static_cast<std::size_t>(matrix.rows()) + 1 &&
-         inner.size() == static_cast<std::size_t>(matrix.nonZeros()) &&
+  return outer.size() == static_cast<size_t>(matrix.rows()) + 1 &&
+         inner.size() == static_cast<size_t>(matrix.nonZeros()) &&
          std::equal(outer.begin(), outer.end(), matrix.outerIndexPtr()) &&
          std::equal(inner.begin(), inner.end(), matrix.innerIndexPtr());
 }
@@ -28,7 +28,7 @@ bool DelassusReduction::samePattern(const IncrementalProblem& problem) const
 {
   if (types_.size() != problem.laws.size())
     return false;
-  for (std::size_t i = 0; i < types_.size(); ++i)
+  for (size_t i = 0; i < types_.size(); ++i)
     if (types_[i] != problem.laws[i].type)
       return false;
   return frictional_contact_sim::samePattern(problem.H, h_outer_, h_inner_) &&
@@ -38,10 +38,10 @@ bool DelassusReduction::samePattern(const IncrementalProblem& problem) const
 void DelassusReduction::collectPattern(const SparseRows& matrix, int first_row, int last_row, int mark)
 {
   for (int p = matrix.outerIndexPtr()[first_row]; p < matrix.outerIndexPtr()[last_row]; ++p)
-    for (int k = factor_.permuted(matrix.innerIndexPtr()[p]); k >= 0 && flags_[static_cast<std::size_t>(k)] != mark;
-         k = factor_.parent()[static_cast<std::size_t>(k)])
+    for (int k = factor_.permuted(matrix.innerIndexPtr()[p]); k >= 0 && flags_[static_cast<size_t>(k)] != mark;
+         k = factor_.parent()[static_cast<size_t>(k)])
     {
-      flags_[static_cast<std::size_t>(k)] = mark;
+      flags_[static_cast<size_t>(k)] = mark;
       pattern_.push_back(k);
     }
 }
@@ -64,29 +64,29 @@ void DelassusReduction::findLoops(const SparseRows& G)
     collectPattern(G, row, row + 1, row);
     for (const int velocity : pattern_)
     {
-      int& first = toucher[static_cast<std::size_t>(velocity)];
+      int& first = toucher[static_cast<size_t>(velocity)];
       if (first < 0)
         first = row;
       sets.unite(first, row);
     }
   }
-  std::vector<int> index(static_cast<std::size_t>(rows), -1);
+  std::vector<int> index(static_cast<size_t>(rows), -1);
   for (int row = 0; row < rows; ++row)
   {
-    int& loop = index[static_cast<std::size_t>(sets.root(row))];
+    int& loop = index[static_cast<size_t>(sets.root(row))];
     if (loop < 0)
     {
       loop = static_cast<int>(loops_.size());
       loops_.emplace_back();
     }
-    loops_[static_cast<std::size_t>(loop)].rows.push_back(row);
+    loops_[static_cast<size_t>(loop)].rows.push_back(row);
   }
   loop_of_.assign(flags_.size(), -1);
-  for (std::size_t velocity = 0; velocity < toucher.size(); ++velocity)
+  for (size_t velocity = 0; velocity < toucher.size(); ++velocity)
     if (toucher[velocity] >= 0)
     {
-      loop_of_[velocity] = index[static_cast<std::size_t>(sets.root(toucher[velocity]))];
-      loops_[static_cast<std::size_t>(loop_of_[velocity])].velocities.push_back(static_cast<int>(velocity));
+      loop_of_[velocity] = index[static_cast<size_t>(sets.root(toucher[velocity]))];
+      loops_[static_cast<size_t>(loop_of_[velocity])].velocities.push_back(static_cast<int>(velocity));
     }
   Eigen::Index columns = 0, largest_rank = 0;
   for (Loop& loop : loops_)
@@ -103,23 +103,23 @@ void DelassusReduction::findLoops(const SparseRows& G)
   coupling_.resize(largest_rank, 3);
 }
 
-void DelassusReduction::addLoops(std::size_t law, int mark)
+void DelassusReduction::addLoops(size_t law, int mark)
 {
   if (loop_of_.empty())
     return;
   const auto first_loop = law_loops_.size();
   const auto end = pattern_.size();
-  for (auto p = static_cast<std::size_t>(pattern_begin_[law]); p < end; ++p)
+  for (auto p = static_cast<size_t>(pattern_begin_[law]); p < end; ++p)
   {
-    const int loop = loop_of_[static_cast<std::size_t>(pattern_[p])];
+    const int loop = loop_of_[static_cast<size_t>(pattern_[p])];
     if (loop < 0 || std::find(law_loops_.begin() + static_cast<std::ptrdiff_t>(first_loop), law_loops_.end(), loop) !=
                         law_loops_.end())
       continue;
     law_loops_.push_back(loop);
-    for (const int velocity : loops_[static_cast<std::size_t>(loop)].velocities)
-      if (flags_[static_cast<std::size_t>(velocity)] != mark)
+    for (const int velocity : loops_[static_cast<size_t>(loop)].velocities)
+      if (flags_[static_cast<size_t>(velocity)] != mark)
       {
-        flags_[static_cast<std::size_t>(velocity)] = mark;
+        flags_[static_cast<size_t>(velocity)] = mark;
         pattern_.push_back(velocity);
       }
   }
@@ -127,7 +127,7 @@ void DelassusReduction::addLoops(std::size_t law, int mark)
 
 void DelassusReduction::analyse(const IncrementalProblem& problem)
 {
-  const std::size_t count = problem.laws.size();
+  const size_t count = problem.laws.size();
   storePattern(problem.H, h_outer_, h_inner_);
   storePattern(problem.G, g_outer_, g_inner_);
   types_.resize(count);
@@ -136,12 +136,12 @@ void DelassusReduction::analyse(const IncrementalProblem& problem)
   value_begin_.assign(count + 1, 0);
   law_loop_begin_.assign(count + 1, 0);
   law_loops_.clear();
-  flags_.assign(static_cast<std::size_t>(problem.velocities()), -1);
-  work_.assign(3 * static_cast<std::size_t>(problem.velocities()), 0.0);
+  flags_.assign(static_cast<size_t>(problem.velocities()), -1);
+  work_.assign(3 * static_cast<size_t>(problem.velocities()), 0.0);
   findLoops(problem.G);
   pattern_.clear();
   std::fill(flags_.begin(), flags_.end(), -1);
-  for (std::size_t i = 0; i < count; ++i)
+  for (size_t i = 0; i < count; ++i)
   {
     const int dimension = problem.laws[i].dimension();
     const int mark = static_cast<int>(i);
@@ -154,13 +154,13 @@ void DelassusReduction::analyse(const IncrementalProblem& problem)
     pattern_begin_[i + 1] = static_cast<int>(pattern_.size());
     value_begin_[i + 1] = value_begin_[i] + dimension * (pattern_begin_[i + 1] - pattern_begin_[i]);
   }
-  half_rows_.resize(static_cast<std::size_t>(value_begin_[count]));
+  half_rows_.resize(static_cast<size_t>(value_begin_[count]));
   preparePairs();
 }
 
 bool DelassusReduction::sameVelocities(int i, int j) const
 {
-  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+  const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
   return std::equal(pattern_.begin() + pattern_begin_[a], pattern_.begin() + pattern_begin_[a + 1],
                     pattern_.begin() + pattern_begin_[b], pattern_.begin() + pattern_begin_[b + 1]);
 }
@@ -176,38 +176,37 @@ void DelassusReduction::preparePairs()
   std::vector<std::vector<int>> touching(flags_.size());
   const auto forEachRoot = [&](int i, auto visit)
   {
-    const auto law = static_cast<std::size_t>(i);
+    const auto law = static_cast<size_t>(i);
     for (int p = pattern_begin_[law]; p < pattern_begin_[law + 1]; ++p)
     {
-      const auto velocity = static_cast<std::size_t>(pattern_[static_cast<std::size_t>(p)]);
+      const auto velocity = static_cast<size_t>(pattern_[static_cast<size_t>(p)]);
       if (factor_.parent()[velocity] < 0)
         visit(touching[velocity]);
     }
   };
   for (int i = 0; i < count; ++i)
     forEachRoot(i, [&](std::vector<int>& laws) { laws.push_back(i); });
-  std::vector<std::vector<int>> columns(static_cast<std::size_t>(count));
-  std::vector<int> mark(static_cast<std::size_t>(count), -1);
+  std::vector<std::vector<int>> columns(static_cast<size_t>(count));
+  std::vector<int> mark(static_cast<size_t>(count), -1);
   double entries = 0.0;
   for (int i = 0; i < count; ++i)
   {
-    std::vector<int>& row = columns[static_cast<std::size_t>(i)];
+    std::vector<int>& row = columns[static_cast<size_t>(i)];
     row.push_back(i);
-    mark[static_cast<std::size_t>(i)] = i;
+    mark[static_cast<size_t>(i)] = i;
     forEachRoot(i,
                 [&](const std::vector<int>& laws)
                 {
                   for (const int j : laws)
-                    if (mark[static_cast<std::size_t>(j)] != i)
+                    if (mark[static_cast<size_t>(j)] != i)
                     {
-                      mark[static_cast<std::size_t>(j)] = i;
+                      mark[static_cast<size_t>(j)] = i;
                       row.push_back(j);
                     }
                 });
     std::sort(row.begin(), row.end());
     for (const int j : row)
-      entries +=
-          local_.laws[static_cast<std::size_t>(i)].dimension() * local_.laws[static_cast<std::size_t>(j)].dimension();
+      entries += local_.laws[static_cast<size_t>(i)].dimension() * local_.laws[static_cast<size_t>(j)].dimension();
   }
   DelassusOperator& W = local_.W;
   const bool full = DelassusOperator::prefersDense(rows, entries / (static_cast<double>(rows) * rows));
@@ -220,7 +219,7 @@ void DelassusReduction::preparePairs()
   else
     W.resizeSparse(local_.laws, columns);
   for (int i = 0; i < count; ++i)
-    for (const int j : columns[static_cast<std::size_t>(i)])
+    for (const int j : columns[static_cast<size_t>(i)])
       if (j <= i)
       {
         const bool same = sameVelocities(i, j);

@@ -89,7 +89,7 @@ constexpr MultiplyRows MULTIPLY[3][3] = {{multiplyRows<1, 1>, multiplyRows<1, 2>
 
 void DelassusReduction::computeHalfRows(const IncrementalProblem& problem)
 {
-  for (std::size_t i = 0; i < types_.size(); ++i)
+  for (size_t i = 0; i < types_.size(); ++i)
   {
     const int* pattern = pattern_.data() + pattern_begin_[i];
     const int count = pattern_begin_[i + 1] - pattern_begin_[i];
@@ -107,14 +107,14 @@ void DelassusReduction::computeHalfRows(const IncrementalProblem& problem)
 void DelassusReduction::multiplyHalfRows(const Eigen::VectorXd& x, Eigen::VectorXd& rows) const
 {
   rows.resize(block_offset_.back());
-  for (std::size_t i = 0; i < types_.size(); ++i)
+  for (size_t i = 0; i < types_.size(); ++i)
   {
     const int dimension = block_offset_[i + 1] - block_offset_[i];
     const double* z = half_rows_.data() + value_begin_[i];
     double sum[3] = {0.0, 0.0, 0.0};
     for (int p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p)
       for (int k = 0; k < dimension; ++k)
-        sum[k] += *z++ * x[pattern_[static_cast<std::size_t>(p)]];
+        sum[k] += *z++ * x[pattern_[static_cast<size_t>(p)]];
     std::copy(sum, sum + dimension, rows.data() + block_offset_[i]);
   }
 }
@@ -124,8 +124,8 @@ void DelassusReduction::multiplyPairs()
   const int stride = local_.W.isDense() ? local_.W.rows() : 0;
   for (const Pair& pair : pairs_)
   {
-    const auto i = static_cast<std::size_t>(pair.i);
-    const auto j = static_cast<std::size_t>(pair.j);
+    const auto i = static_cast<size_t>(pair.i);
+    const auto j = static_cast<size_t>(pair.j);
     MULTIPLY[block_offset_[i + 1] - block_offset_[i] - 1][block_offset_[j + 1] - block_offset_[j] - 1](
         pattern_.data() + pattern_begin_[i], pattern_.data() + pattern_begin_[i + 1],
         half_rows_.data() + value_begin_[i], pattern_.data() + pattern_begin_[j],
@@ -174,7 +174,7 @@ void DelassusReduction::factorLoops(const IncrementalProblem& problem)
   {
     const int columns = static_cast<int>(loop.velocities.size());
     OrthogonalRows::Matrix& A = loop.factor.matrix();
-    for (std::size_t k = 0; k < loop.rows.size(); ++k)
+    for (size_t k = 0; k < loop.rows.size(); ++k)
     {
       halfRows<1>(problem.G, loop.rows[k], factor_, loop.velocities.data(), columns, work_.data(),
                   A.row(static_cast<Eigen::Index>(k)).data());
@@ -185,29 +185,29 @@ void DelassusReduction::factorLoops(const IncrementalProblem& problem)
     loop.factor.coordinates(loop.b, loop.particular);
     // x at r = 0: - N g + Q y = - g + Q (y + Q^T g)
     for (int k = 0; k < columns; ++k)
-      loop.part[k] = half_force_[loop.velocities[static_cast<std::size_t>(k)]];
+      loop.part[k] = half_force_[loop.velocities[static_cast<size_t>(k)]];
     loop.coordinates.noalias() = loop.factor.basis() * loop.part;
     loop.coordinates += loop.particular;
     loop.part.noalias() = loop.factor.basis().transpose() * loop.coordinates;
     for (int k = 0; k < columns; ++k)
-      base_[loop.velocities[static_cast<std::size_t>(k)]] += loop.part[k];
+      base_[loop.velocities[static_cast<size_t>(k)]] += loop.part[k];
   }
 }
 
 void DelassusReduction::projectHalfRows()
 {
-  for (std::size_t i = 0; i < types_.size(); ++i)
+  for (size_t i = 0; i < types_.size(); ++i)
     for (int l = law_loop_begin_[i]; l < law_loop_begin_[i + 1]; ++l)
     {
-      const int index = law_loops_[static_cast<std::size_t>(l)];
-      const Loop& loop = loops_[static_cast<std::size_t>(index)];
+      const int index = law_loops_[static_cast<size_t>(l)];
+      const Loop& loop = loops_[static_cast<size_t>(index)];
       const int dimension = block_offset_[i + 1] - block_offset_[i];
       const auto forEachColumn = [&](auto visit)
       {
         // A law that touches a loop has all its velocities, in the same ascending order.
         int column = 0;
         for (int p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p)
-          if (loop_of_[static_cast<std::size_t>(pattern_[static_cast<std::size_t>(p)])] == index)
+          if (loop_of_[static_cast<size_t>(pattern_[static_cast<size_t>(p)])] == index)
             visit(column++, half_rows_.data() + value_begin_[i] + dimension * (p - pattern_begin_[i]));
       };
       auto gathered = gathered_.topLeftCorner(loop.part.size(), dimension);
@@ -232,13 +232,13 @@ void DelassusReduction::projectHalfRows()
 void DelassusReduction::recover(const IncrementalProblem& problem, Solution& solution)
 {
   x_ = base_;
-  for (std::size_t i = 0; i < types_.size(); ++i)
+  for (size_t i = 0; i < types_.size(); ++i)
   {
     const int dimension = block_offset_[i + 1] - block_offset_[i];
     const double* z = half_rows_.data() + value_begin_[i];
     for (int p = pattern_begin_[i]; p < pattern_begin_[i + 1]; ++p)
       for (int k = 0; k < dimension; ++k)
-        x_[pattern_[static_cast<std::size_t>(p)]] += *z++ * solution.r[block_offset_[i] + k];
+        x_[pattern_[static_cast<size_t>(p)]] += *z++ * solution.r[block_offset_[i] + k];
   }
   factor_.transposedHalfSolve(x_, solution.v);
   solution.u.resize(problem.rows());
@@ -257,12 +257,12 @@ void DelassusReduction::recoverMultipliers(const IncrementalProblem& problem, So
   factor_.halfSolve(momentum_, x_);
   for (Loop& loop : loops_)
   {
-    for (std::size_t k = 0; k < loop.velocities.size(); ++k)
+    for (size_t k = 0; k < loop.velocities.size(); ++k)
       loop.part[static_cast<Eigen::Index>(k)] = x_[loop.velocities[k]];
     loop.coordinates.noalias() = loop.factor.basis() * loop.part;
     loop.coordinates += loop.particular;
     loop.factor.leastNorm(loop.coordinates, loop.b);
-    for (std::size_t k = 0; k < loop.rows.size(); ++k)
+    for (size_t k = 0; k < loop.rows.size(); ++k)
       solution.lambda[loop.rows[k]] = loop.b[static_cast<Eigen::Index>(k)];
   }
 }

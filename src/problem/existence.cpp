@@ -101,7 +101,7 @@ private:
 
   void addPolygon(CriterionProgram& program, double widening) const
   {
-    for (std::size_t i = 0; i < kinematics_.cones.size(); ++i)
+    for (size_t i = 0; i < kinematics_.cones.size(); ++i)
     {
       const DualCone& cone = kinematics_.cones[i];
       const int index = static_cast<int>(i);
@@ -215,7 +215,7 @@ private:
   int addCuts(CriterionProgram& program) const
   {
     int cuts = 0;
-    for (std::size_t i = 0; i < kinematics_.cones.size(); ++i)
+    for (size_t i = 0; i < kinematics_.cones.size(); ++i)
     {
       const DualCone& cone = kinematics_.cones[i];
       if (cone.dimension != 3 || cone.friction == 0.0)
@@ -247,7 +247,7 @@ private:
     for (DualCone& cone : normals.cones)
       cone.friction = 0.0;
     CriterionProgram program(normals, units_, bound_, ENOUGH);
-    for (std::size_t i = 0; i < normals.cones.size(); ++i)
+    for (size_t i = 0; i < normals.cones.size(); ++i)
       program.addFacet(static_cast<int>(i), Eigen::Vector2d::Zero(), 0.0);
     ++report_.rounds;
     if (program.solve(options_.max_simplex_iterations) && program.s() < 0.0)
@@ -300,7 +300,7 @@ ContactKinematics collect(const SparseRows& H, const Eigen::VectorXd& w, const s
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> offsets;
   int row = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
   {
     const Law& law = laws[i];
     if (law.isCoulomb() || law.type == LawType::UNILATERAL)

@@ -47,12 +47,10 @@ void appendTriplets(const fclib_matrix& matrix, bool transpose, int row_offset, 
   const int outer = matrix.nz == -1 ? matrix.n : matrix.m;
   for (int k = 0; k < outer; ++k)
     for (int entry = matrix.p[k]; entry < matrix.p[k + 1]; ++entry)
-    {
       if (matrix.nz == -1)
         add(matrix.i[entry], k, matrix.x[entry]);
       else
         add(k, matrix.i[entry], matrix.x[entry]);
-    }
 }
 
 SparseRows fromTriplets(int rows, int columns, const Triplets& triplets)
@@ -91,9 +89,9 @@ FclibInfo toInfo(const fclib_info* info)
 
 std::vector<Law> coulombLaws(int dimension, int contacts, const double* mu)
 {
-  std::vector<Law> laws(static_cast<std::size_t>(contacts));
+  std::vector<Law> laws(static_cast<size_t>(contacts));
   for (int i = 0; i < contacts; ++i)
-    laws[static_cast<std::size_t>(i)] = {dimension == 3 ? LawType::COULOMB_3D : LawType::COULOMB_2D, mu[i]};
+    laws[static_cast<size_t>(i)] = {dimension == 3 ? LawType::COULOMB_3D : LawType::COULOMB_2D, mu[i]};
   return laws;
 }
 
@@ -163,7 +161,7 @@ void readLocal(const std::string& path, const FclibShape& shape, FclibProblem& r
     throw std::runtime_error(path + ": libfclib could not read the local problem");
   DelassusProblem& problem = result.local;
   problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, stored->mu);
-  problem.laws.resize(problem.laws.size() + static_cast<std::size_t>(shape.bilaterals), {LawType::BILATERAL, 0.0});
+  problem.laws.resize(problem.laws.size() + static_cast<size_t>(shape.bilaterals), {LawType::BILATERAL, 0.0});
   const int size = shape.rows + shape.bilaterals;
   Triplets triplets;
   appendTriplets(*stored->W, false, 0, 0, triplets);

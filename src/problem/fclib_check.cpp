@@ -25,7 +25,7 @@ public:
   bool exists(const std::string& name) const
   {
     // H5Lexists wants every intermediate group to exist.
-    for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1))
+    for (size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1))
       if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0)
         return false;
     return H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT) > 0 &&
@@ -59,9 +59,9 @@ public:
   void checkReals(const std::string& name, int count) const
   {
     const std::vector<double> values = readReals(name);
-    if (values.size() != static_cast<std::size_t>(count))
+    if (values.size() != static_cast<size_t>(count))
       fail(name + " has " + std::to_string(values.size()) + " entries", std::to_string(count));
-    for (std::size_t k = 0; k < values.size(); ++k)
+    for (size_t k = 0; k < values.size(); ++k)
       if (!std::isfinite(values[k]))
         fail(name + "[" + std::to_string(k) + "] is " + std::to_string(values[k]), "a finite number");
   }
@@ -104,7 +104,7 @@ private:
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
     if (count < 0)
       fail(name + " has no data", "numbers");
-    std::vector<Number> values(static_cast<std::size_t>(count));
+    std::vector<Number> values(static_cast<size_t>(count));
     if (count > 0 && H5Dread(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       fail(name + " cannot be read", "intact data");
     return values;
@@ -129,22 +129,22 @@ std::pair<int, int> Checker::checkMatrix(const std::string& name) const
   const std::vector<int> p = readIntegers(name + "/p");
   const std::vector<int> i = readIntegers(name + "/i");
   const std::vector<double> x = readReals(name + "/x");
-  const auto pointers = static_cast<std::size_t>(nz >= 0 ? nz : nz == -1 ? columns + 1 : rows + 1);
-  const auto indices = static_cast<std::size_t>(nz >= 0 ? nz : nzmax);
+  const auto pointers = static_cast<size_t>(nz >= 0 ? nz : nz == -1 ? columns + 1 : rows + 1);
+  const auto indices = static_cast<size_t>(nz >= 0 ? nz : nzmax);
   if (p.size() != pointers || i.size() != indices)
     fail(name + " has " + std::to_string(p.size()) + " entries in p and " + std::to_string(i.size()) + " in i",
          std::to_string(pointers) + " and " + std::to_string(indices));
   // Dumped triplets may hold fewer values than nzmax; libfclib then reads only as many.
-  if (x.size() > static_cast<std::size_t>(nzmax) || x.size() < indices)
+  if (x.size() > static_cast<size_t>(nzmax) || x.size() < indices)
     fail(name + "/x has " + std::to_string(x.size()) + " entries", std::to_string(indices) + " to nzmax");
-  const auto expectIndices = [&](const std::vector<int>& values, std::size_t count, int limit, const char* which)
+  const auto expectIndices = [&](const std::vector<int>& values, size_t count, int limit, const char* which)
   {
-    for (std::size_t k = 0; k < count; ++k)
+    for (size_t k = 0; k < count; ++k)
       if (values[k] < 0 || values[k] >= limit)
         fail(name + "/" + which + "[" + std::to_string(k) + "] is " + std::to_string(values[k]),
              "0 to " + std::to_string(limit - 1));
   };
-  std::size_t used = indices;
+  size_t used = indices;
   if (nz >= 0)
   {
     expectIndices(i, i.size(), rows, "i");
@@ -152,16 +152,16 @@ std::pair<int, int> Checker::checkMatrix(const std::string& name) const
   }
   else
   {
-    for (std::size_t k = 0; k + 1 < p.size(); ++k)
+    for (size_t k = 0; k + 1 < p.size(); ++k)
       if (p[k + 1] < p[k])
         fail(name + "/p decreases at entry " + std::to_string(k + 1), "ascending pointers");
     if (p.front() != 0 || p.back() > nzmax)
       fail(name + "/p runs from " + std::to_string(p.front()) + " to " + std::to_string(p.back()),
            "0 to at most nzmax = " + std::to_string(nzmax));
-    used = static_cast<std::size_t>(p.back());
+    used = static_cast<size_t>(p.back());
     expectIndices(i, used, nz == -1 ? rows : columns, "i");
   }
-  for (std::size_t k = 0; k < used; ++k)
+  for (size_t k = 0; k < used; ++k)
     if (!std::isfinite(x[k]))
       fail(name + "/x[" + std::to_string(k) + "] is " + std::to_string(x[k]), "a finite number");
   if (exists(name + "/conditioning"))
@@ -265,7 +265,7 @@ FclibShape checkFclib(const std::string& path)
                  "a multiple of spacedim = " + std::to_string(shape.dimension));
   checker.checkReals(root + "/vectors/mu", shape.rows / shape.dimension);
   const std::vector<double> mu = checker.readReals(root + "/vectors/mu");
-  for (std::size_t k = 0; k < mu.size(); ++k)
+  for (size_t k = 0; k < mu.size(); ++k)
     if (mu[k] < 0.0)
       checker.fail(root + "/vectors/mu[" + std::to_string(k) + "] is " + std::to_string(mu[k]), ">= 0");
   for (const char* text : {"/info/title", "/info/description", "/info/math_info"})

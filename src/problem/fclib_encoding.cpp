@@ -25,8 +25,8 @@ struct RowMap
 RowMap mapRows(const std::vector<Law>& laws)
 {
   RowMap map;
-  const bool any_3d =
-      std::any_of(laws.begin(), laws.end(), [](const Law& law) { return law.type == LawType::COULOMB_3D; });
+  const bool any_3d = std::any_of(
+      laws.begin(), laws.end(), [](const Law& law) { return law.type == LawType::COULOMB_3D; });
   const bool any_2d =
       std::any_of(laws.begin(), laws.end(), [](const Law& law) { return law.type == LawType::COULOMB_2D; });
   map.dimension = any_2d && !any_3d ? 2 : 3;
@@ -73,7 +73,7 @@ void encodeRows(const RowMap& map, const Solution& solution, EncodedSolution& en
   encoded.r.setZero(map.rows);
   const Eigen::Index before = encoded.lambda.size();
   encoded.lambda.conservativeResize(before + map.bilaterals);
-  for (std::size_t row = 0; row < map.contact_row.size(); ++row)
+  for (size_t row = 0; row < map.contact_row.size(); ++row)
   {
     const auto index = static_cast<Eigen::Index>(row);
     if (map.contact_row[row] < 0)
@@ -84,7 +84,7 @@ void encodeRows(const RowMap& map, const Solution& solution, EncodedSolution& en
     encoded.r[map.contact_row[row]] = solution.r[index];
     encoded.u[map.contact_row[row]] = solution.u[index];
   }
-  for (std::size_t k = 0; k < map.extra_row.size(); ++k)
+  for (size_t k = 0; k < map.extra_row.size(); ++k)
     encoded.r[map.extra_row[k]] = map.threshold[k];
 }
 }  // namespace
@@ -109,8 +109,8 @@ EncodedGlobal encodeGlobal(const IncrementalProblem& problem, const Solution* so
   for (int k = 0; k < map.extra; ++k)
   {
     M.emplace_back(velocities + k, velocities + k, mass);
-    H.emplace_back(map.extra_row[static_cast<std::size_t>(k)], velocities + k, 1.0);
-    result.f[velocities + k] = map.threshold[static_cast<std::size_t>(k)];
+    H.emplace_back(map.extra_row[static_cast<size_t>(k)], velocities + k, 1.0);
+    result.f[velocities + k] = map.threshold[static_cast<size_t>(k)];
   }
   result.w.setZero(map.rows);
   result.b.setZero(bilaterals + map.bilaterals);
@@ -120,7 +120,7 @@ EncodedGlobal encodeGlobal(const IncrementalProblem& problem, const Solution* so
       G.emplace_back(row, static_cast<int>(entry.col()), entry.value());
   for (int row = 0; row < problem.rows(); ++row)
   {
-    const auto index = static_cast<std::size_t>(row);
+    const auto index = static_cast<size_t>(row);
     const bool contact = map.contact_row[index] >= 0;
     const int target = contact ? map.contact_row[index] : bilaterals + map.bilateral[index];
     (contact ? result.w : result.b)[target] = problem.w[row];
@@ -152,13 +152,13 @@ EncodedLocal encodeLocal(const DelassusProblem& problem, const Solution* solutio
   const SparseRows source = problem.W.toSparse();
   for (int row = 0; row < problem.W.rows(); ++row)
   {
-    const auto index = static_cast<std::size_t>(row);
+    const auto index = static_cast<size_t>(row);
     const bool contact = map.contact_row[index] >= 0;
     const int target = contact ? map.contact_row[index] : map.bilateral[index];
     (contact ? encoded.q : encoded.s)[target] = problem.q[row];
     for (SparseRows::InnerIterator entry(source, row); entry; ++entry)
     {
-      const auto column = static_cast<std::size_t>(entry.col());
+      const auto column = static_cast<size_t>(entry.col());
       if (contact && map.contact_row[column] >= 0)
         W.emplace_back(target, map.contact_row[column], entry.value());
       else if (contact)
@@ -168,7 +168,7 @@ EncodedLocal encodeLocal(const DelassusProblem& problem, const Solution* solutio
     }
   }
   const double weight = problem.W.rows() > 0 ? source.diagonal().mean() : 1.0;
-  for (std::size_t k = 0; k < map.extra_row.size(); ++k)
+  for (size_t k = 0; k < map.extra_row.size(); ++k)
   {
     W.emplace_back(map.extra_row[k], map.extra_row[k], weight);
     encoded.q[map.extra_row[k]] = -weight * map.threshold[k];

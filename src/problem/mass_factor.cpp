@@ -16,8 +16,8 @@ namespace frictional_contact_sim
 {
 bool MassFactor::samePattern(const SparseRows& M) const
 {
-  const auto size = static_cast<std::size_t>(M.rows());
-  const auto entries = static_cast<std::size_t>(M.nonZeros());
+  const auto size = static_cast<size_t>(M.rows());
+  const auto entries = static_cast<size_t>(M.nonZeros());
   return outer_.size() == size + 1 && inner_.size() == entries &&
          std::equal(outer_.begin(), outer_.end(), M.outerIndexPtr()) &&
          std::equal(inner_.begin(), inner_.end(), M.innerIndexPtr());
@@ -26,7 +26,7 @@ bool MassFactor::samePattern(const SparseRows& M) const
 void MassFactor::analyse(const SparseRows& M)
 {
   const int size = static_cast<int>(M.rows());
-  const auto count = static_cast<std::size_t>(size);
+  const auto count = static_cast<size_t>(size);
   outer_.assign(M.outerIndexPtr(), M.outerIndexPtr() + size + 1);
   inner_.assign(M.innerIndexPtr(), M.innerIndexPtr() + M.nonZeros());
   for (std::vector<int>* array : {&permutation_, &inverse_permutation_, &parent_, &counts_, &flags_, &pattern_})
@@ -46,14 +46,14 @@ void MassFactor::analyse(const SparseRows& M)
   // A tree numbered from its root has no fill when eliminated from its leaves; AMD, approximate, may miss that.
   const int amd_fill = symbolic();
   const std::vector<int> amd_permutation = permutation_;
-  for (std::size_t k = 0; k < count; ++k)
+  for (size_t k = 0; k < count; ++k)
     permutation_[k] = size - 1 - static_cast<int>(k);
   if (symbolic() > amd_fill)
   {
     permutation_ = amd_permutation;
     symbolic();
   }
-  const auto fill = static_cast<std::size_t>(column_begin_[count]);
+  const auto fill = static_cast<size_t>(column_begin_[count]);
   row_indices_.resize(fill);
   values_.resize(fill);
   pivots_.resize(count);
@@ -77,12 +77,12 @@ bool MassFactor::compute(const SparseRows& M)
                   pattern_.data(), flags_.data(), permutation_.data(), inverse_permutation_.data());
   for (int k = 0; k < size; ++k)
   {
-    const double pivot = k < done ? pivots_[static_cast<std::size_t>(k)] : 0.0;
+    const double pivot = k < done ? pivots_[static_cast<size_t>(k)] : 0.0;
     if (!(pivot > 0.0) || !std::isfinite(pivot))
     {
       outer_.clear();
       throw std::invalid_argument("M is not positive definite: pivot of row " +
-                                  std::to_string(permutation_[static_cast<std::size_t>(k)]) + " is " +
+                                  std::to_string(permutation_[static_cast<size_t>(k)]) + " is " +
                                   std::to_string(pivot) + ", expected > 0");
     }
     inverse_root_pivots_[k] = 1.0 / std::sqrt(pivot);
@@ -95,13 +95,12 @@ void MassFactor::halfSolve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const
   const int size = this->size();
   x.resize(size);
   for (int k = 0; k < size; ++k)
-    x[k] = b[permutation_[static_cast<std::size_t>(k)]];
+    x[k] = b[permutation_[static_cast<size_t>(k)]];
   for (int k = 0; k < size; ++k)
   {
     const double value = x[k];
-    const auto column = static_cast<std::size_t>(k);
-    for (auto p = static_cast<std::size_t>(column_begin_[column]);
-         p < static_cast<std::size_t>(column_begin_[column + 1]); ++p)
+    const auto column = static_cast<size_t>(k);
+    for (auto p = static_cast<size_t>(column_begin_[column]); p < static_cast<size_t>(column_begin_[column + 1]); ++p)
       x[row_indices_[p]] -= values_[p] * value;
   }
   x.array() *= inverse_root_pivots_.array();
@@ -113,16 +112,15 @@ void MassFactor::transposedHalfSolve(const Eigen::VectorXd& x, Eigen::VectorXd& 
   permuted_.array() = x.array() * inverse_root_pivots_.array();
   for (int k = size - 1; k >= 0; --k)
   {
-    const auto column = static_cast<std::size_t>(k);
+    const auto column = static_cast<size_t>(k);
     double value = permuted_[k];
-    for (auto p = static_cast<std::size_t>(column_begin_[column]);
-         p < static_cast<std::size_t>(column_begin_[column + 1]); ++p)
+    for (auto p = static_cast<size_t>(column_begin_[column]); p < static_cast<size_t>(column_begin_[column + 1]); ++p)
       value -= values_[p] * permuted_[row_indices_[p]];
     permuted_[k] = value;
   }
   v.resize(size);
   for (int k = 0; k < size; ++k)
-    v[permutation_[static_cast<std::size_t>(k)]] = permuted_[k];
+    v[permutation_[static_cast<size_t>(k)]] = permuted_[k];
 }
 
 }  // namespace frictional_contact_sim

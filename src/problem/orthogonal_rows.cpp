@@ -10,7 +10,7 @@ void OrthogonalRows::resize(int rows, int columns)
 {
   matrix_.resize(rows, columns);
   triangle_.resize(rows, std::min(rows, columns));
-  order_.resize(static_cast<std::size_t>(rows));
+  order_.resize(static_cast<size_t>(rows));
 }
 
 int OrthogonalRows::pivot(int k) const
@@ -37,7 +37,7 @@ void OrthogonalRows::compute(double tolerance)
     {
       matrix_.row(k).swap(matrix_.row(p));
       triangle_.row(k).head(k).swap(triangle_.row(p).head(k));
-      std::swap(order_[static_cast<std::size_t>(k)], order_[static_cast<std::size_t>(p)]);
+      std::swap(order_[static_cast<size_t>(k)], order_[static_cast<size_t>(p)]);
     }
     matrix_.row(k) /= norm;
     for (int j = 0; j < k; ++j)
@@ -62,7 +62,7 @@ void OrthogonalRows::coordinates(const Eigen::VectorXd& b, Eigen::VectorXd& y) c
 {
   y.resize(rank_);
   for (int k = 0; k < rank_; ++k)
-    y[k] = (b[order_[static_cast<std::size_t>(k)]] - triangle_.row(k).head(k).dot(y.head(k))) / triangle_(k, k);
+    y[k] = (b[order_[static_cast<size_t>(k)]] - triangle_.row(k).head(k).dot(y.head(k))) / triangle_(k, k);
 }
 
 void OrthogonalRows::leastNorm(Eigen::VectorXd& c, Eigen::VectorXd& x)
@@ -76,7 +76,7 @@ void OrthogonalRows::leastNorm(Eigen::VectorXd& c, Eigen::VectorXd& x)
     for (int k = rank_ - 1; k >= 0; --k)
       c[k] = (c[k] - L.col(k).segment(k + 1, rank_ - 1 - k).dot(c.segment(k + 1, rank_ - 1 - k))) / L(k, k);
     for (int k = 0; k < rank_; ++k)
-      x[order_[static_cast<std::size_t>(k)]] = c[k];
+      x[order_[static_cast<size_t>(k)]] = c[k];
     return;
   }
   gram_.resize(rank_, rank_);
@@ -84,7 +84,7 @@ void OrthogonalRows::leastNorm(Eigen::VectorXd& c, Eigen::VectorXd& x)
   gram_factor_.compute(gram_);
   gram_factor_.solveInPlace(c);
   for (Eigen::Index k = 0; k < rows; ++k)
-    x[order_[static_cast<std::size_t>(k)]] = L.row(k).dot(c);
+    x[order_[static_cast<size_t>(k)]] = L.row(k).dot(c);
 }
 
 }  // namespace frictional_contact_sim

@@ -37,12 +37,10 @@ void computeStepLengths(const DelassusOperator& W, Eigen::VectorXd& step_lengths
     largest = std::max(largest, step_lengths[i]);
   }
   for (int i = 0; i < count; ++i)
-  {
     if (step_lengths[i] > 0.0)
       step_lengths[i] = 1.0 / step_lengths[i];
     else
       step_lengths[i] = largest > 0.0 ? 1.0 / largest : 1.0;
-  }
 }
 
 LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
@@ -52,7 +50,7 @@ LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_
     errors->resize(static_cast<Eigen::Index>(laws.size()));
   LawErrors found;
   int row = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
   {
     const auto index = static_cast<Eigen::Index>(i);
     const int dimension = laws[i].dimension();

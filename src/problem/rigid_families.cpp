@@ -147,7 +147,7 @@ IncrementalProblem granularProblem(int contacts, int width, const RigidFamilyOpt
     {
       if (neighbour < 0 || count >= contacts)
         continue;
-      const Eigen::Vector3d arm = 0.5 * (balls[static_cast<std::size_t>(neighbour)].center - ball.center);
+      const Eigen::Vector3d arm = 0.5 * (balls[static_cast<size_t>(neighbour)].center - ball.center);
       builder.addContact(index, arm, neighbour, -arm, -arm.normalized());
       ++count;
     }

@@ -76,7 +76,7 @@ private:
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3, 3 * pieces);
     for (int j = 0; j <= section; ++j)
     {
-      const auto index = static_cast<std::size_t>(j);
+      const auto index = static_cast<size_t>(j);
       Eigen::Matrix3d rate = (j == section ? 0.5 : 1.0) * step * frames[index];
       if (p != nullptr)
         rate = -cross(*p - points[index]) * rate;
@@ -122,12 +122,12 @@ void addDynamics(const RodFamilyOptions& options, const Rod& rod, const Eigen::V
   f.setZero(size);
   for (int i = 0; i < static_cast<int>(rod.points.size()); ++i)
   {
-    const Eigen::Vector3d& point = rod.points[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& point = rod.points[static_cast<size_t>(i)];
     const Eigen::MatrixXd J = rod.velocity(i, point);
     const Eigen::MatrixXd Jw = rod.rotation(i);
     const double line = DENSITY * AREA * rod.step;
     // A section's inertia is I about diameters and 2 I about the tangent.
-    const Eigen::RowVectorXd spin = rod.frames[static_cast<std::size_t>(i)].col(0).transpose() * Jw;
+    const Eigen::RowVectorXd spin = rod.frames[static_cast<size_t>(i)].col(0).transpose() * Jw;
     mass += line * J.transpose() * J;
     mass += DENSITY * INERTIA * rod.step * (Jw.transpose() * Jw + spin.transpose() * spin);
     const Eigen::Vector3d carried = jerk.head<3>() + cross(jerk.tail<3>()) * point;
@@ -156,12 +156,12 @@ std::vector<ClosePair> closestPairs(const std::vector<Rod>& rods, int count)
   for (int a = 0; a < static_cast<int>(rods.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(rods.size()); ++b)
     {
-      const std::vector<Eigen::Vector3d>& first = rods[static_cast<std::size_t>(a)].points;
-      const std::vector<Eigen::Vector3d>& second = rods[static_cast<std::size_t>(b)].points;
-      for (std::size_t i = 0; i < first.size(); ++i)
+      const std::vector<Eigen::Vector3d>& first = rods[static_cast<size_t>(a)].points;
+      const std::vector<Eigen::Vector3d>& second = rods[static_cast<size_t>(b)].points;
+      for (size_t i = 0; i < first.size(); ++i)
       {
-        std::size_t best = 0;
-        for (std::size_t j = 1; j < second.size(); ++j)
+        size_t best = 0;
+        for (size_t j = 1; j < second.size(); ++j)
           if ((first[i] - second[j]).squaredNorm() < (first[i] - second[best]).squaredNorm())
             best = j;
         candidates.push_back({(first[i] - second[best]).norm(), a, b, static_cast<int>(i), static_cast<int>(best)});
@@ -260,7 +260,7 @@ IncrementalProblem rodFamilyProblem(const RodFamilyOptions& options)
   Eigen::VectorXd f;
   for (int k = 0; k < options.rods; ++k)
   {
-    const auto index = static_cast<std::size_t>(k);
+    const auto index = static_cast<size_t>(k);
     addDynamics(options, rods[index], shapes[index], jerk, draw, mass, f);
     problem.f.segment(k * size, size) = f;
     for (int i = 0; i < size; ++i)
@@ -271,13 +271,13 @@ IncrementalProblem rodFamilyProblem(const RodFamilyOptions& options)
   problem.M.setFromTriplets(entries.begin(), entries.end());
   entries.clear();
   const std::vector<ClosePair> pairs = closestPairs(rods, options.contacts);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
+  for (size_t i = 0; i < pairs.size(); ++i)
   {
     const ClosePair& pair = pairs[i];
-    const Rod& a = rods[static_cast<std::size_t>(pair.rod_a)];
-    const Rod& b = rods[static_cast<std::size_t>(pair.rod_b)];
-    const Eigen::Vector3d& point_a = a.points[static_cast<std::size_t>(pair.section_a)];
-    const Eigen::Vector3d& point_b = b.points[static_cast<std::size_t>(pair.section_b)];
+    const Rod& a = rods[static_cast<size_t>(pair.rod_a)];
+    const Rod& b = rods[static_cast<size_t>(pair.rod_b)];
+    const Eigen::Vector3d& point_a = a.points[static_cast<size_t>(pair.section_a)];
+    const Eigen::Vector3d& point_b = b.points[static_cast<size_t>(pair.section_b)];
     const Eigen::Vector3d middle = 0.5 * (point_a + point_b);
     const Eigen::Matrix3d frame = contactFrame(normalOf(point_a - point_b));
     const Eigen::MatrixXd block_a = frame * a.velocity(pair.section_a, middle);

@@ -41,7 +41,7 @@ void expectFinite(const char* name, const double* values, Eigen::Index count)
 
 void expectLaws(const std::vector<Law>& laws)
 {
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
     if (!std::isfinite(laws[i].coefficient) || laws[i].coefficient < 0.0)
       throw std::invalid_argument("laws[" + std::to_string(i) + "].coefficient is " +
                                   std::to_string(laws[i].coefficient) + ", expected a finite number >= 0");

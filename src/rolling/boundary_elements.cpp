@@ -102,7 +102,7 @@ BoundarySolution solveBoundaryProblem(const BoundaryMatrices& matrices, const st
   Eigen::MatrixXd A = matrices.H;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   for (Eigen::Index k = 0; k < n; ++k)
-    if (displacement_given[static_cast<std::size_t>(k)])
+    if (displacement_given[static_cast<size_t>(k)])
     {
       A.col(k) = -unit * matrices.G.col(k);
       right -= matrices.H.col(k) * given[k];
@@ -112,7 +112,7 @@ BoundarySolution solveBoundaryProblem(const BoundaryMatrices& matrices, const st
   const Eigen::VectorXd unknown = A.partialPivLu().solve(right);
   BoundarySolution solution{given, given};
   for (Eigen::Index k = 0; k < n; ++k)
-    if (displacement_given[static_cast<std::size_t>(k)])
+    if (displacement_given[static_cast<size_t>(k)])
       solution.t[k] = unit * unknown[k];
     else
       solution.u[k] = unknown[k];

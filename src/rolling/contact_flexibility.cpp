@@ -32,8 +32,8 @@ Eigen::MatrixXd pick(const Eigen::MatrixXd& matrix, const std::vector<Eigen::Ind
                      const std::vector<Eigen::Index>& columns)
 {
   Eigen::MatrixXd part(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t j = 0; j < columns.size(); ++j)
-    for (std::size_t i = 0; i < rows.size(); ++i)
+  for (size_t j = 0; j < columns.size(); ++j)
+    for (size_t i = 0; i < rows.size(); ++i)
       part(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = matrix(rows[i], columns[j]);
   return part;
 }
@@ -46,8 +46,7 @@ Eigen::MatrixXd frameMatrix(const Contour& contour, const std::vector<Eigen::Ind
   for (Eigen::Index i = 0; i < n; ++i)
   {
     const bool flat = frames == ContactFrames::FLAT;
-    const Eigen::Vector2d tangent =
-        flat ? Eigen::Vector2d(1.0, 0.0) : contour.tangent(contact[static_cast<std::size_t>(i)]);
+    const Eigen::Vector2d tangent = flat ? Eigen::Vector2d(1.0, 0.0) : contour.tangent(contact[static_cast<size_t>(i)]);
     C.block<2, 1>(2 * i, i) << -tangent.y(), tangent.x();
     C.block<2, 1>(2 * i, n + i) = tangent;
   }
@@ -149,8 +148,8 @@ ContactFlexibility condense(const Contour& contour, const ElasticMaterial& mater
   F.width.resize(n);
   for (Eigen::Index i = 0; i < n; ++i)
   {
-    F.x[i] = contour.middle(contact[static_cast<std::size_t>(i)]).x();
-    F.width[i] = contour.length(contact[static_cast<std::size_t>(i)]);
+    F.x[i] = contour.middle(contact[static_cast<size_t>(i)]).x();
+    F.width[i] = contour.length(contact[static_cast<size_t>(i)]);
   }
   F.NN = flexibility.topLeftCorner(n, n);
   F.NT = flexibility.topRightCorner(n, n);

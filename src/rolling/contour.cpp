@@ -53,7 +53,7 @@ std::vector<double> gradedAngles(const CylinderMesh& mesh, double step)
 std::vector<Eigen::Index> Contour::select(ElementKind kind) const
 {
   std::vector<Eigen::Index> found;
-  for (std::size_t i = 0; i < kinds.size(); ++i)
+  for (size_t i = 0; i < kinds.size(); ++i)
     if (kinds[i] == kind)
       found.push_back(static_cast<Eigen::Index>(i));
   return found;
@@ -118,7 +118,7 @@ Contour makeCylinderContour(const CylinderMesh& mesh)
   const std::vector<double> graded = gradedAngles(mesh, std::min(step, mesh.max_angle));
   angles.push_back(mesh.half_angle);
   kinds.push_back(ElementKind::FREE);
-  for (std::size_t i = 0; i + 1 < graded.size(); ++i)
+  for (size_t i = 0; i + 1 < graded.size(); ++i)
   {
     angles.push_back(graded[i]);
     kinds.push_back(ElementKind::FREE);
@@ -129,7 +129,7 @@ Contour makeCylinderContour(const CylinderMesh& mesh)
     angles.push_back(PI - mesh.held_angle + 2.0 * mesh.held_angle * i / held);
     kinds.push_back(ElementKind::HELD);
   }
-  for (std::size_t i = graded.size(); i-- > 0;)
+  for (size_t i = graded.size(); i-- > 0;)
   {
     angles.push_back(2.0 * PI - graded[i]);
     kinds.push_back(ElementKind::FREE);
@@ -137,7 +137,7 @@ Contour makeCylinderContour(const CylinderMesh& mesh)
   Eigen::Matrix2Xd points(2, static_cast<Eigen::Index>(angles.size()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
   {
-    const double angle = angles[static_cast<std::size_t>(i)];
+    const double angle = angles[static_cast<size_t>(i)];
     // 1 - cos without cancellation: gaps near the lowest point are small.
     points.col(i) << mesh.radius * std::sin(angle), 2.0 * mesh.radius * std::pow(std::sin(0.5 * angle), 2);
   }
@@ -153,7 +153,7 @@ Contour makePolygon(const Eigen::Matrix2Xd& points)
   contour.end.resize(2, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     contour.end.col(i) = points.col((i + 1) % points.cols());
-  contour.kinds.assign(static_cast<std::size_t>(points.cols()), ElementKind::FREE);
+  contour.kinds.assign(static_cast<size_t>(points.cols()), ElementKind::FREE);
   return contour;
 }
 

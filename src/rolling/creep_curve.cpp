@@ -124,7 +124,7 @@ void writeCreepCurve(std::ostream& out, const CreepCurve& curve, const ElasticMa
   const auto list = [&](const std::vector<double>& values)
   {
     out << '[';
-    for (std::size_t i = 0; i < values.size(); ++i)
+    for (size_t i = 0; i < values.size(); ++i)
       out << (i > 0 ? ", " : "") << values[i];
     out << "]\n";
   };

@@ -106,15 +106,15 @@ FrictionalContact FrictionalLcp::solve(const Eigen::VectorXd& d_N, const Eigen::
   contact.u_T = flexibility_.TN * contact.r_N + flexibility_.TT * contact.r_T;
   contact.P = contact.r_N.dot(flexibility_.width);
   contact.Q = contact.r_T.dot(flexibility_.width);
-  contact.states.resize(static_cast<std::size_t>(n));
+  contact.states.resize(static_cast<size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i)
   {
     const bool touches = lcp.x[i] > lcp.y[i];
     const bool right = lcp.x[n + i] > lcp.y[n + i], left = lcp.x[2 * n + i] > lcp.y[2 * n + i];
-    contact.states[static_cast<std::size_t>(i)] = !touches ? NodeState::SEPARATION
-                                                  : right  ? NodeState::SLIP_RIGHT
-                                                  : left   ? NodeState::SLIP_LEFT
-                                                           : NodeState::STICK;
+    contact.states[static_cast<size_t>(i)] = !touches ? NodeState::SEPARATION
+                                             : right  ? NodeState::SLIP_RIGHT
+                                             : left   ? NodeState::SLIP_LEFT
+                                                      : NodeState::STICK;
   }
   return contact;
 }
@@ -125,7 +125,7 @@ Eigen::Matrix2d FrictionalLcp::loadDerivative(const FrictionalContact& contact) 
   std::vector<Eigen::Index> touching, sticking;
   for (Eigen::Index i = 0; i < F.size(); ++i)
   {
-    const NodeState state = contact.states[static_cast<std::size_t>(i)];
+    const NodeState state = contact.states[static_cast<size_t>(i)];
     if (state != NodeState::SEPARATION)
       touching.push_back(i);
     if (state == NodeState::STICK)
@@ -135,16 +135,16 @@ Eigen::Matrix2d FrictionalLcp::loadDerivative(const FrictionalContact& contact) 
   if (c == 0)
     return Eigen::Matrix2d::Zero();
   const auto share = [&](Eigen::Index i) {  // r_T/r_N of a slipping node
-    const NodeState state = contact.states[static_cast<std::size_t>(i)];
+    const NodeState state = contact.states[static_cast<size_t>(i)];
     return state == NodeState::SLIP_RIGHT ? -friction_[i] : state == NodeState::SLIP_LEFT ? friction_[i] : 0.0;
   };
   Eigen::MatrixXd A(c + s, c + s);
   for (Eigen::Index k = 0; k < c + s; ++k)
   {
-    const Eigen::Index j = k < c ? touching[static_cast<std::size_t>(k)] : sticking[static_cast<std::size_t>(k - c)];
+    const Eigen::Index j = k < c ? touching[static_cast<size_t>(k)] : sticking[static_cast<size_t>(k - c)];
     for (Eigen::Index m = 0; m < c + s; ++m)
     {
-      const Eigen::Index i = m < c ? touching[static_cast<std::size_t>(m)] : sticking[static_cast<std::size_t>(m - c)];
+      const Eigen::Index i = m < c ? touching[static_cast<size_t>(m)] : sticking[static_cast<size_t>(m - c)];
       const double by_N = m < c ? F.NN(i, j) : F.TN(i, j), by_T = m < c ? F.NT(i, j) : F.TT(i, j);
       A(m, k) = k < c ? by_N + share(j) * by_T : by_T;
     }
@@ -156,7 +156,7 @@ Eigen::Matrix2d FrictionalLcp::loadDerivative(const FrictionalContact& contact) 
   Eigen::Matrix2d derivative = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < c + s; ++k)
   {
-    const Eigen::Index j = k < c ? touching[static_cast<std::size_t>(k)] : sticking[static_cast<std::size_t>(k - c)];
+    const Eigen::Index j = k < c ? touching[static_cast<size_t>(k)] : sticking[static_cast<size_t>(k - c)];
     if (k < c)
       derivative.row(0) += F.width[j] * traction.row(k);
     derivative.row(1) += (k < c ? share(j) : 1.0) * F.width[j] * traction.row(k);

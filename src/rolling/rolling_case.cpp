@@ -158,7 +158,7 @@ RollingRun runOne(const RollingCase& study, double friction, double lower_modulu
 double RollingRun::contactWidth() const
 {
   double sum = 0.0;
-  for (std::size_t i = 0; i < contact.states.size(); ++i)
+  for (size_t i = 0; i < contact.states.size(); ++i)
     if (contact.states[i] != NodeState::SEPARATION)
       sum += flexibility.width[static_cast<Eigen::Index>(i)];
   return sum;
@@ -167,7 +167,7 @@ double RollingRun::contactWidth() const
 double RollingRun::stickWidth() const
 {
   double sum = 0.0;
-  for (std::size_t i = 0; i < contact.states.size(); ++i)
+  for (size_t i = 0; i < contact.states.size(); ++i)
     if (contact.states[i] == NodeState::STICK)
       sum += flexibility.width[static_cast<Eigen::Index>(i)];
   return sum;

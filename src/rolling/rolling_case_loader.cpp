@@ -23,7 +23,7 @@ public:
   const YAML::Node& node() const { return node_; }
   bool has(const char* name) const { return node_[name].IsDefined() && !node_[name].IsNull(); }
   Entry at(const std::string& name) const { return {node_[name], file_, key_.empty() ? name : key_ + "." + name}; }
-  Entry at(std::size_t i) const { return {node_[i], file_, key_ + "[" + std::to_string(i) + "]"}; }
+  Entry at(size_t i) const { return {node_[i], file_, key_ + "[" + std::to_string(i) + "]"}; }
 
   [[noreturn]] void fail(const std::string& expected) const
   {
@@ -71,11 +71,13 @@ public:
   }
   double positive() const
   {
-    return number("a number > 0", [](double value) { return value > 0.0; });
+    return number(
+        "a number > 0", [](double value) { return value > 0.0; });
   }
   double any() const
   {
-    return number("a finite number", [](double) { return true; });
+    return number(
+        "a finite number", [](double) { return true; });
   }
   int integer(int lower, int upper) const
   {
@@ -89,7 +91,7 @@ public:
   int word(const std::vector<std::string>& words) const
   {
     std::string known;
-    for (std::size_t i = 0; i < words.size(); ++i)
+    for (size_t i = 0; i < words.size(); ++i)
     {
       if (node_.IsDefined() && node_.IsScalar() && node_.Scalar() == words[i])
         return static_cast<int>(i);
@@ -105,7 +107,7 @@ public:
     if (!node_.IsDefined() || !node_.IsSequence() || node_.size() == 0)
       fail("a value or a list of values");
     std::vector<Entry> entries;
-    for (std::size_t i = 0; i < node_.size(); ++i)
+    for (size_t i = 0; i < node_.size(); ++i)
       entries.push_back(at(i));
     return entries;
   }
@@ -118,7 +120,8 @@ private:
 
 double poissonRatio(const Entry& entry)
 {
-  return entry.number("a number in (-1, 0.5)", [](double value) { return value > -1.0 && value < 0.5; });
+  return entry.number(
+      "a number in (-1, 0.5)", [](double value) { return value > -1.0 && value < 0.5; });
 }
 
 void readMaterials(const Entry& root, RollingCase& study)
@@ -152,9 +155,9 @@ void setKinds(const Entry& range, ElementKind kind, Contour& contour)
     range.fail(kind == ElementKind::CONTACT ? "[first, last] element; there are no contact nodes"
                                             : "[first, last] element");
   const int last = static_cast<int>(contour.size()) - 1;
-  const int first = range.at(std::size_t{0}).integer(0, last);
-  for (int i = first; i <= range.at(std::size_t{1}).integer(first, last); ++i)
-    contour.kinds[static_cast<std::size_t>(i)] = kind;
+  const int first = range.at(size_t{0}).integer(0, last);
+  for (int i = first; i <= range.at(size_t{1}).integer(first, last); ++i)
+    contour.kinds[static_cast<size_t>(i)] = kind;
 }
 
 void readContour(const Entry& entry, RollingCase& study)
@@ -164,12 +167,12 @@ void readContour(const Entry& entry, RollingCase& study)
   if (!points.node().IsDefined() || !points.node().IsSequence() || points.node().size() < 3)
     points.fail("a list of at least three points [x, y]");
   Eigen::Matrix2Xd matrix(2, static_cast<Eigen::Index>(points.node().size()));
-  for (std::size_t i = 0; i < points.node().size(); ++i)
+  for (size_t i = 0; i < points.node().size(); ++i)
   {
     const Entry point = points.at(i);
     if (!point.node().IsSequence() || point.node().size() != 2)
       point.fail("a point [x, y]");
-    matrix.col(static_cast<Eigen::Index>(i)) << point.at(std::size_t{0}).any(), point.at(std::size_t{1}).any();
+    matrix.col(static_cast<Eigen::Index>(i)) << point.at(size_t{0}).any(), point.at(size_t{1}).any();
   }
   Contour contour = makePolygon(matrix);
   setKinds(entry.at("contact"), ElementKind::CONTACT, contour);

@@ -52,7 +52,7 @@ double closedTraction(const RollingCase& study, const RollingRun& run, const Her
 void writeNodes(std::ostream& out, const RollingCase& study, const std::vector<RollingRun>& runs)
 {
   out << "run,friction,lower_modulus,x,width,gap,r_N,r_T,y_N,y_T,u_N,u_T,slip,state,closed_N,closed_T\n";
-  for (std::size_t k = 0; k < runs.size(); ++k)
+  for (size_t k = 0; k < runs.size(); ++k)
   {
     const RollingRun& run = runs[k];
     const HertzLine hertz = hertzLine(run.contact.P, study.radius, run.materials.reducedModulus());
@@ -62,7 +62,7 @@ void writeNodes(std::ostream& out, const RollingCase& study, const std::vector<R
       const FrictionalContact& c = run.contact;
       out << k << ',' << run.friction << ',' << lowerModulus(run) << ',' << x << ',' << run.flexibility.width[i] << ','
           << run.gap[i] << ',' << c.r_N[i] << ',' << c.r_T[i] << ',' << c.y_N[i] << ',' << c.y_T[i] << ',' << c.u_N[i]
-          << ',' << c.u_T[i] << ',' << run.slip[i] << ',' << toString(c.states[static_cast<std::size_t>(i)]) << ','
+          << ',' << c.u_T[i] << ',' << run.slip[i] << ',' << toString(c.states[static_cast<size_t>(i)]) << ','
           << hertz.pressure(x) << ',' << closedTraction(study, run, hertz, x) << '\n';
     }
   }
@@ -72,7 +72,7 @@ void writeRuns(std::ostream& out, const RollingCase& study, const std::vector<Ro
 {
   out << "run,friction,lower_modulus,beta,nodes,P,Q,approach,shift,contact_width,stick_width,peak_pressure,hertz_width,"
          "hertz_pressure,energy,asymmetry,residual,pivots,converged,flexibility_seconds,contact_seconds\n";
-  for (std::size_t k = 0; k < runs.size(); ++k)
+  for (size_t k = 0; k < runs.size(); ++k)
   {
     const RollingRun& run = runs[k];
     const HertzLine hertz = hertzLine(run.contact.P, study.radius, run.materials.reducedModulus());
@@ -97,7 +97,7 @@ std::vector<std::string> writeRollingFiles(const RollingCase& study, const std::
   File summary(paths[1]);
   writeRuns(summary.stream(), study, runs);
   summary.close();
-  for (std::size_t k = 0; k < runs.size(); ++k)
+  for (size_t k = 0; k < runs.size(); ++k)
     if (runs[k].curve)
     {
       paths.push_back(stem + "_curve_" + std::to_string(k) + ".yaml");
@@ -105,13 +105,13 @@ std::vector<std::string> writeRollingFiles(const RollingCase& study, const std::
       writeCreepCurve(curve.stream(), *runs[k].curve, study.upper, study.radius);
       curve.close();
     }
-  for (std::size_t k = 0; k < runs.size(); ++k)
+  for (size_t k = 0; k < runs.size(); ++k)
     if (study.motion == Motion::TRANSIENT)
     {
       paths.push_back(stem + "_history_" + std::to_string(k) + ".csv");
       File history(paths.back());
       history.stream() << "step,Q\n";
-      for (std::size_t step = 0; step < runs[k].history.size(); ++step)
+      for (size_t step = 0; step < runs[k].history.size(); ++step)
         history.stream() << step + 1 << ',' << runs[k].history[step] << '\n';
       history.close();
     }

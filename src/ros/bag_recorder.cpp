@@ -61,9 +61,7 @@ void BagRecorder::close()
   subscribers_.clear();
   bag_.close();
   if (std::rename((file_ + ".active").c_str(), file_.c_str()) != 0)
-  {
     throw std::runtime_error("cannot rename " + file_ + ".active to " + file_ + ": " + std::strerror(errno));
-  }
 }
 
 int runBagRecorder(int argc, char** argv)
@@ -82,9 +80,7 @@ int runBagRecorder(int argc, char** argv)
     BagRecorder recorder(node, argv[1], std::vector<std::string>(argv + 2, argv + argc));
     ros::CallbackQueue& queue = *ros::getGlobalCallbackQueue();
     while (!interrupted && ros::ok())
-    {
       queue.callAvailable(ros::WallDuration(PERIOD));
-    }
     queue.callAvailable();  // what has been received by now
     recorder.close();
     ROS_INFO_STREAM(argv[1] << ": " << recorder.messages() << " messages");

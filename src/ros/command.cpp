@@ -10,9 +10,7 @@ namespace
 void requireFinite(double value, const std::string& joint)
 {
   if (!std::isfinite(value))
-  {
     throw CommandError("joint '" + joint + "': found " + std::to_string(value) + ", expected a finite number");
-  }
 }
 
 }  // namespace
@@ -26,22 +24,16 @@ JointTargets namedTargets(const NameTable& names, const std::vector<std::string>
                        " numbers in '" + field + "', expected one for each name");
   }
   JointTargets targets;
-  for (std::size_t i = 0; i < joints.size(); ++i)
+  for (size_t i = 0; i < joints.size(); ++i)
   {
     const int joint = findJoint(names, joints[i]);
     if (joint < 0)
-    {
       throw CommandError("unknown joint '" + joints[i] + "'");
-    }
     if (names.joints[joint].mimic)
-    {
       throw CommandError("joint '" + joints[i] + "' follows another one and takes no command");
-    }
     const auto same = [joint](const std::pair<int, double>& target) { return target.first == joint; };
     if (std::any_of(targets.begin(), targets.end(), same))
-    {
       throw CommandError("joint '" + joints[i] + "' is named twice");
-    }
     requireFinite(values[i], joints[i]);
     targets.emplace_back(joint, values[i]);
   }
@@ -56,7 +48,7 @@ JointTargets orderedTargets(const NameTable& names, const std::vector<double>& v
                        std::to_string(names.actuated.size()) + ", one for each actuated joint");
   }
   JointTargets targets;
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (size_t i = 0; i < values.size(); ++i)
   {
     requireFinite(values[i], names.joints[names.actuated[i]].name);
     targets.emplace_back(names.actuated[i], values[i]);
@@ -71,9 +63,7 @@ JointCommand positionCommand(double target, const std::string& joint, const std:
   command.target = target;
   auto found = gains.find(joint);
   if (found == gains.end())
-  {
     found = gains.find("default");
-  }
   if (found != gains.end())
   {
     command.kp = found->second.kp;

@@ -42,15 +42,11 @@ void fillHeader(const ros::Time& stamp, std_msgs::Header& header)
 void fillSide(const ShapeInfo& shape, const NameTable& names, std::string& body, std::string& link,
               std::string& collision)
 {
-  if (shape.robot >= 0)
-  {
-    body = names.robots[shape.robot];
-  }
+  if (shape.body >= 0)
+    body = names.bodies[shape.body];
   else
-  {
     body.clear();
-  }
-  link = shape.link;
+  link = shape.link_name;
   collision = shape.name;
 }
 
@@ -105,19 +101,17 @@ void fillJointState(const Simulator& simulator, const NameTable& names, const ro
                     sensor_msgs::JointState& message)
 {
   message.header.stamp = stamp;  // no frame: joint coordinates have none
-  const std::size_t count = names.joints.size();
+  const size_t count = names.joints.size();
   if (message.name.size() != count)
   {
     message.name.resize(count);
     message.position.resize(count);
     message.velocity.resize(count);
     message.effort.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
+    for (size_t i = 0; i < count; ++i)
       message.name[i] = names.joints[i].name;
-    }
   }
-  for (std::size_t i = 0; i < count; ++i)
+  for (size_t i = 0; i < count; ++i)
   {
     const JointHandle& joint = names.joints[i];
     message.position[i] = simulator.position(joint.body)[joint.q_index];
@@ -132,7 +126,7 @@ void fillContacts(const Simulator& simulator, const NameTable& names, const ros:
   const std::vector<ContactState>& contacts = simulator.contacts();
   const double dt = simulator.report().dt;
   message.contacts.resize(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i)
+  for (size_t i = 0; i < contacts.size(); ++i)
   {
     const ContactState& source = contacts[i];
     Contact& target = message.contacts[i];

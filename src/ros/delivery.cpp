@@ -24,9 +24,7 @@ constexpr double CALL_SLICE = 0.02;  // between two looks at a shutdown [s]
 bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, XmlRpcValue& response)
 {
   if (!client.executeNonBlock(method, request))
-  {
     return false;
-  }
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
   bool done = false;
@@ -47,9 +45,7 @@ int sumColumn(XmlRpcValue& connections, int column)
   {
     XmlRpcValue& connection = connections[i];
     if (connection.size() > column && connection[column].getType() == XmlRpcValue::TypeInt)
-    {
       sum += static_cast<int>(connection[column]);
-    }
   }
   return sum;
 }
@@ -108,13 +104,9 @@ void DeliveryMonitor::readConnections()
   XmlRpcValue info;
   connections_.clear();
   if (!ask(ros::this_node::getName(), "getBusInfo", info))
-  {
     return;
-  }
   for (int i = 0; info.getType() == XmlRpcValue::TypeArray && i < info.size(); ++i)
-  {
     connections_[static_cast<int>(info[i][0])] = static_cast<std::string>(info[i][1]);
-  }
 }
 
 bool DeliveryMonitor::sentCounts(std::map<std::string, Counts>& sent)
@@ -122,9 +114,7 @@ bool DeliveryMonitor::sentCounts(std::map<std::string, Counts>& sent)
   // getBusStats' first part, the publications: [topic, [[connection, bytes, bytes, messages, ...], ...]]
   XmlRpcValue stats;
   if (!ask(ros::this_node::getName(), "getBusStats", stats))
-  {
     return false;
-  }
   XmlRpcValue& publications = stats[0];
   for (int i = 0; publications.getType() == XmlRpcValue::TypeArray && i < publications.size(); ++i)
   {
@@ -135,14 +125,10 @@ bool DeliveryMonitor::sentCounts(std::map<std::string, Counts>& sent)
     {
       const int connection = connections[k][0];
       if (connections_.count(connection) == 0)
-      {
         readConnections();
-      }
       const std::string node = connections_[connection];
       if (!node.empty() && node != ros::this_node::getName())
-      {
         sent[node][topic] += static_cast<int>(connections[k][3]);
-      }
     }
   }
   return true;
@@ -162,9 +148,7 @@ XmlRpcClient* DeliveryMonitor::client(const std::string& node)
     std::uint32_t port = 0;
     if (!ros::master::execute("lookupNode", request, response, uri, false) ||
         !ros::network::splitURI(static_cast<std::string>(uri), host, port))
-    {
       return nullptr;
-    }
     client = std::make_unique<XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
   }
   return client.get();
@@ -174,9 +158,7 @@ bool DeliveryMonitor::receivedCounts(const std::string& node, Counts& received)
 {
   XmlRpcValue stats;
   if (!ask(node, "getBusStats", stats))
-  {
     return false;
-  }
   XmlRpcValue& subscriptions = stats[1];
   for (int i = 0; subscriptions.getType() == XmlRpcValue::TypeArray && i < subscriptions.size(); ++i)
   {
@@ -186,9 +168,7 @@ bool DeliveryMonitor::receivedCounts(const std::string& node, Counts& received)
       received[topic] += sumColumn(subscriptions[i][1], 2);
       const int drops = sumColumn(subscriptions[i][1], 3);
       if (drops > 0)
-      {
         dropped_[node + " " + topic] = drops;
-      }
     }
   }
   return true;
@@ -199,23 +179,15 @@ std::string DeliveryMonitor::laggard()
   flushPublishQueues();
   std::map<std::string, Counts> all_sent;
   if (!sentCounts(all_sent))
-  {
     return ros::this_node::getName();
-  }
   for (const auto& [node, sent] : all_sent)
   {
     Counts received;
     if (!receivedCounts(node, received))
-    {
       return node;  // stopped or ended: in the second case its connections disappear presently
-    }
     for (const auto& [topic, count] : sent)
-    {
       if (received[topic] < count)
-      {
         return node;
-      }
-    }
   }
   return std::string();
 }

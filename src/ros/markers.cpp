@@ -90,18 +90,16 @@ double defaultForceScale(const Simulator& simulator)
 {
   double mass = 0.0;
   for (int body = 0; body < simulator.bodyCount(); ++body)
-  {
     mass += simulator.model(body).totalMass();
-  }
   const double weight = mass * simulator.scenario().gravity.norm();
   return weight > 0.0 ? 0.5 / weight : 0.01;
 }
 
-std::size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale,
-                        std::size_t previous_arrows, visualization_msgs::MarkerArray& message)
+size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale, size_t previous_arrows,
+                   visualization_msgs::MarkerArray& message)
 {
   const std::vector<ContactState>& contacts = simulator.contacts();
-  const std::size_t arrows = contacts.size();
+  const size_t arrows = contacts.size();
   message.markers.resize(std::max(arrows, previous_arrows) + 1);
   visualization_msgs::Marker& cones = message.markers.back();
   cones.ns = "cone";
@@ -111,7 +109,7 @@ std::size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, doub
   cones.color = makeColor(1.0, 1.0, 1.0, 1.0);
   cones.points.clear();
   cones.colors.clear();
-  for (std::size_t i = 0; i + 1 < message.markers.size(); ++i)
+  for (size_t i = 0; i + 1 < message.markers.size(); ++i)
   {
     visualization_msgs::Marker& arrow = message.markers[i];
     arrow.ns = "force";

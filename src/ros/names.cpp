@@ -6,12 +6,12 @@ namespace frictional_contact_sim
 {
 namespace
 {
-std::string qualified(const std::string& robot, const std::string& name)
+std::string qualified(const std::string& body_name, const std::string& name)
 {
-  return robot + "/" + name;
+  return body_name + "/" + name;
 }
 
-/** @brief How often each URDF name occurs, joints or links of all robots. */
+/** @brief How often each URDF name occurs, joints or links of all bodies. */
 std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
 {
   std::map<std::string, int> count;
@@ -19,19 +19,11 @@ std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
   {
     const MultibodyModel& model = simulator.model(body);
     if (joints)
-    {
       for (const Joint& joint : model.joints)
-      {
         ++count[joint.name];
-      }
-    }
     else
-    {
       for (const Frame& frame : model.frames)
-      {
         ++count[frame.name];
-      }
-    }
   }
   return count;
 }
@@ -39,7 +31,7 @@ std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
 void addJoints(const Simulator& simulator, int body, const std::map<std::string, int>& count, NameTable& table)
 {
   const MultibodyModel& model = simulator.model(body);
-  for (std::size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
+  for (size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
   {
     const Joint& joint = model.joints[i];
     const std::string name = count.at(joint.name) == 1 ? joint.name : qualified(simulator.bodyName(body), joint.name);
@@ -50,9 +42,7 @@ void addJoints(const Simulator& simulator, int body, const std::map<std::string,
     }
     const bool mimic = joint.mimic.joint >= 0;
     if (!mimic)
-    {
       table.actuated.push_back(static_cast<int>(table.joints.size()));
-    }
     table.joints.push_back({name, body, static_cast<int>(i), joint.q_index, joint.v_index, mimic});
   }
 }
@@ -67,7 +57,7 @@ NameTable makeNameTable(const Simulator& simulator)
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     const MultibodyModel& model = simulator.model(body);
-    table.robots.push_back(simulator.bodyName(body));
+    table.bodies.push_back(simulator.bodyName(body));
     addJoints(simulator, body, joint_count, table);
     std::vector<std::string> frames;
     for (const Frame& frame : model.frames)
@@ -75,8 +65,8 @@ NameTable makeNameTable(const Simulator& simulator)
       const bool unique = link_count.at(frame.name) == 1;
       frames.push_back(unique ? frame.name : qualified(simulator.bodyName(body), frame.name));
     }
-    const int root = model.findFrame(model.bodies.front().name);
-    table.roots.push_back(root >= 0 ? frames[root] : model.bodies.front().name);
+    const int root = model.findFrame(model.links.front().name);
+    table.roots.push_back(root >= 0 ? frames[root] : model.links.front().name);
     table.frames.push_back(frames);
   }
   return table;
@@ -84,20 +74,16 @@ NameTable makeNameTable(const Simulator& simulator)
 
 int findJoint(const NameTable& table, const std::string& name)
 {
-  for (std::size_t i = 0; i < table.joints.size(); ++i)
+  for (size_t i = 0; i < table.joints.size(); ++i)
   {
     const JointHandle& joint = table.joints[i];
     if (joint.name == name)
-    {
       return static_cast<int>(i);
-    }
-    const std::string& robot = table.robots[joint.body];
-    const bool starts_with_robot = name.size() > robot.size() && name.compare(0, robot.size(), robot) == 0;
-    if (starts_with_robot && name[robot.size()] == '/' &&
-        name.compare(robot.size() + 1, std::string::npos, joint.name) == 0)
-    {
+    const std::string& body_name = table.bodies[joint.body];
+    const bool starts_with_body = name.size() > body_name.size() && name.compare(0, body_name.size(), body_name) == 0;
+    if (starts_with_body && name[body_name.size()] == '/' &&
+        name.compare(body_name.size() + 1, std::string::npos, joint.name) == 0)
       return static_cast<int>(i);
-    }
   }
   return -1;
 }

@@ -24,9 +24,7 @@ void Pacer::restart(double simulated, double wall)
 double Pacer::wait(double simulated, double wall)
 {
   if (factor_ <= 0.0)
-  {
     return 0.0;
-  }
   const double due = start_wall_ + (simulated - start_simulated_) / factor_;
   if (wall - due > MAX_DELAY)
   {

@@ -94,9 +94,7 @@ std::vector<std::string> ParameterReader::names() const
   {
     XmlRpcValue copy = tree_;
     for (const auto& entry : copy)
-    {
       names.push_back(entry.first);
-    }
   }
   return names;
 }
@@ -127,9 +125,7 @@ ParameterReader ParameterReader::child(const std::string& name)
 {
   const XmlRpcValue value = raw(name);
   if (has(name) && value.getType() != XmlRpcValue::TypeStruct)
-  {
     fail(name, "a dictionary");
-  }
   return ParameterReader(value, prefix_ + name + "/");
 }
 
@@ -137,12 +133,8 @@ std::vector<std::string> ParameterReader::unknown() const
 {
   std::vector<std::string> unknown;
   for (const std::string& name : names())
-  {
     if (known_.count(name) == 0)
-    {
       unknown.push_back(prefix_ + name);
-    }
-  }
   return unknown;
 }
 
@@ -150,14 +142,10 @@ void ParameterReader::read(const std::string& name, double& value, const NumberR
 {
   const XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   double number = 0.0;
   if (!toNumber(found, number) || !rule.holds(number))
-  {
     fail(name, rule.expected);
-  }
   value = number;
 }
 
@@ -165,13 +153,9 @@ void ParameterReader::read(const std::string& name, int& value, int smallest)
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   if (found.getType() != XmlRpcValue::TypeInt || static_cast<int>(found) < smallest)
-  {
     fail(name, "an integer >= " + std::to_string(smallest));
-  }
   value = static_cast<int>(found);
 }
 
@@ -179,13 +163,9 @@ void ParameterReader::read(const std::string& name, bool& value)
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   if (found.getType() != XmlRpcValue::TypeBoolean)
-  {
     fail(name, "true or false");
-  }
   value = static_cast<bool>(found);
 }
 
@@ -193,36 +173,24 @@ void ParameterReader::read(const std::string& name, std::string& value)
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   if (found.getType() != XmlRpcValue::TypeString)
-  {
     fail(name, "a string");
-  }
   value = static_cast<std::string>(found);
 }
 
-void ParameterReader::read(const std::string& name, std::vector<double>& value, std::size_t size)
+void ParameterReader::read(const std::string& name, std::vector<double>& value, size_t size)
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   const std::string expected = "a list of " + std::to_string(size) + " finite numbers";
   if (found.getType() != XmlRpcValue::TypeArray || found.size() != static_cast<int>(size))
-  {
     fail(name, expected);
-  }
   std::vector<double> numbers(size);
-  for (std::size_t i = 0; i < size; ++i)
-  {
+  for (size_t i = 0; i < size; ++i)
     if (!toNumber(found[static_cast<int>(i)], numbers[i]))
-    {
       fail(name, expected + " (number " + std::to_string(i + 1) + " is " + describe(found[static_cast<int>(i)]) + ")");
-    }
-  }
   value = numbers;
 }
 
@@ -230,20 +198,14 @@ void ParameterReader::read(const std::string& name, std::vector<std::string>& va
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   if (found.getType() != XmlRpcValue::TypeArray)
-  {
     fail(name, "a list of strings");
-  }
   std::vector<std::string> strings;
   for (int i = 0; i < found.size(); ++i)
   {
     if (found[i].getType() != XmlRpcValue::TypeString)
-    {
       fail(name, "a list of strings");
-    }
     strings.push_back(static_cast<std::string>(found[i]));
   }
   value = strings;
@@ -253,23 +215,17 @@ void ParameterReader::read(const std::string& name, std::vector<std::pair<std::s
 {
   XmlRpcValue found = raw(name);
   if (!has(name))
-  {
     return;
-  }
   const std::string expected = "a list of pairs of names: [[a, b], ...]";
   if (found.getType() != XmlRpcValue::TypeArray)
-  {
     fail(name, expected);
-  }
   std::vector<std::pair<std::string, std::string>> pairs;
   for (int i = 0; i < found.size(); ++i)
   {
     XmlRpcValue& pair = found[i];
     const bool two = pair.getType() == XmlRpcValue::TypeArray && pair.size() == 2;
     if (!two || pair[0].getType() != XmlRpcValue::TypeString || pair[1].getType() != XmlRpcValue::TypeString)
-    {
       fail(name, expected);
-    }
     pairs.emplace_back(static_cast<std::string>(pair[0]), static_cast<std::string>(pair[1]));
   }
   value = pairs;

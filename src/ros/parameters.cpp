@@ -29,9 +29,7 @@ Eigen::Isometry3d toPose(const std::vector<double>& xyz, const std::vector<doubl
 void append(std::vector<std::string>& warnings, const ParameterReader& reader)
 {
   for (const std::string& name : reader.unknown())
-  {
     warnings.push_back(name + ": unknown parameter, ignored");
-  }
 }
 
 /** @brief An unknown key of a material is refused, as in a scenario file: a misspelt friction is another simulation. */
@@ -41,9 +39,7 @@ Material readMaterial(ParameterReader& reader, const Material& fallback)
   reader.read("friction", material.friction, notNegative());
   reader.read("restitution", material.restitution, between(0.0, 1.0));
   for (const std::string& name : reader.unknown())
-  {
     throw ParameterError(name + ": unknown key, expected friction or restitution");
-  }
   return material;
 }
 
@@ -68,23 +64,17 @@ void readMaterials(ParameterReader& reader, MaterialTable& table)
   }
   XmlRpc::XmlRpcValue pairs = materials.raw("pairs");
   if (!materials.has("pairs"))
-  {
     return;
-  }
   const std::string expected = "a list of {between: [a, b], friction: mu, restitution: e}";
   if (pairs.getType() != XmlRpc::XmlRpcValue::TypeArray)
-  {
     materials.fail("pairs", expected);
-  }
   for (int i = 0; i < pairs.size(); ++i)
   {
     ParameterReader pair(pairs[i], "~materials/pairs/" + std::to_string(i) + "/");
     std::vector<std::string> names;
     pair.read("between", names);
     if (names.size() != 2)
-    {
       materials.fail("pairs", expected);
-    }
     std::sort(names.begin(), names.end());
     table.pairs[{names[0], names[1]}] = readMaterial(pair, table.fallback);
   }
@@ -100,31 +90,23 @@ void readGround(ParameterReader& reader, NodeParameters& parameters)
     double friction = 0.0;
     ground.read("friction", friction, notNegative());
     if (ground.has("friction"))
-    {
       spec.friction = friction;
-    }
     append(parameters.warnings, ground);
     parameters.scenario.ground = spec;
     return;
   }
   bool has_ground = true;
   if (reader.has("ground") && reader.raw("ground").getType() != XmlRpc::XmlRpcValue::TypeBoolean)
-  {
     reader.fail("ground", "true, false or {height: z, friction: mu}");
-  }
   reader.read("ground", has_ground);
   if (has_ground)
-  {
     parameters.scenario.ground = GroundSpec();
-  }
 }
 
 void readBasePose(ParameterReader& reader, BodySpec& body, std::vector<std::string>& warnings)
 {
   if (!reader.has("base_pose"))
-  {
     return;
-  }
   std::vector<double> xyz(3, 0.0);
   std::vector<double> rpy(3, 0.0);
   if (reader.isStruct("base_pose"))
@@ -139,9 +121,7 @@ void readBasePose(ParameterReader& reader, BodySpec& body, std::vector<std::stri
     std::vector<double> six;
     reader.raw("base_pose");
     if (!reader.isList("base_pose"))
-    {
       reader.fail("base_pose", "[x, y, z, roll, pitch, yaw] or {xyz: [x, y, z], rpy: [roll, pitch, yaw]}");
-    }
     reader.read("base_pose", six, 6);
     xyz.assign(six.begin(), six.begin() + 3);
     rpy.assign(six.begin() + 3, six.end());
@@ -168,9 +148,7 @@ void readRobot(ParameterReader& reader, const std::string& robot_description, No
   readBasePose(reader, body, parameters.warnings);
   ParameterReader positions = reader.child("initial_joint_positions");
   for (const std::string& joint : positions.names())
-  {
     positions.read(joint, body.joints[joint].position, anyNumber());
-  }
   reader.read("disable_collisions", body.disable_collisions);
   readGround(reader, parameters);
   readMaterials(reader, parameters.scenario.materials);
@@ -208,9 +186,7 @@ void readFailurePolicy(ParameterReader& reader, NodeParameters& parameters)
   reader.read("on_failure", name);
   const auto policy = POLICIES.find(name);
   if (policy == POLICIES.end())
-  {
     reader.fail("on_failure", "stop, pause, hold or accept");
-  }
   parameters.on_failure = policy->second;
 }
 
@@ -234,9 +210,7 @@ void requireWritable(const std::string& parameter, const std::string& folder)
   std::string file = folder + "/.writable_XXXXXX";
   const int descriptor = mkstemp(&file[0]);
   if (descriptor < 0)
-  {
     throw ParameterError(parameter + ": cannot write in the folder '" + folder + "': " + std::strerror(errno));
-  }
   close(descriptor);
   unlink(file.c_str());
 }
@@ -245,14 +219,12 @@ void readFiles(ParameterReader& reader, NodeParameters& parameters)
 {
   reader.read("dump_dir", parameters.dump_dir);
   if (!parameters.dump_dir.empty())
-  {
     requireWritable("~dump_dir", parameters.dump_dir);
-  }
   reader.read("max_dumps", parameters.max_dumps, 1);
   reader.read("bag", parameters.bag);
   if (!parameters.bag.empty())
   {
-    const std::size_t slash = parameters.bag.rfind('/');
+    const size_t slash = parameters.bag.rfind('/');
     requireWritable("~bag", slash == std::string::npos ? "." : parameters.bag.substr(0, slash + 1));
   }
 }
@@ -275,9 +247,7 @@ void warnAboutUnused(ParameterReader& reader, NodeParameters& parameters)
   {
     reader.raw(name);
     if (reader.has(name))
-    {
       parameters.warnings.push_back("~" + std::string(name) + ": ignored, the scenario file says it");
-    }
   }
 }
 
@@ -307,9 +277,7 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   bool hold = false;
   reader.read("hold_initial_position", hold);
   for (BodySpec& body : parameters.scenario.bodies)
-  {
     body.hold_initial_position = body.hold_initial_position || hold;
-  }
   readRates(reader, parameters);
   readFailurePolicy(reader, parameters);
   readServoGains(reader, parameters);

@@ -20,9 +20,7 @@ std::string findRobotDescription(ros::NodeHandle& node, ros::NodeHandle& private
   const bool found = private_node.getParam("robot_description", value) ||
                      (node.searchParam("robot_description", key) && node.getParam(key, value));
   if (found && value.getType() != XmlRpc::XmlRpcValue::TypeString)
-  {
     throw ParameterError("robot_description: expected a string with a URDF document");
-  }
   return found ? static_cast<std::string>(value) : std::string();
 }
 
@@ -39,9 +37,7 @@ int runSimulatorNode(int argc, char** argv)
     private_node.getParam(ros::this_node::getName(), tree);
     const NodeParameters parameters = readParameters(tree, findRobotDescription(node, private_node));
     for (const std::string& warning : parameters.warnings)
-    {
       ROS_WARN_STREAM(warning);
-    }
     return SimulatorNode(node, private_node, parameters).run();
   }
   catch (const std::exception& error)

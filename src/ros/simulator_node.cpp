@@ -57,13 +57,9 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
     publisher_.subscribers(awaited_topics_.back());
   }
   for (const std::string& warning : simulator_.warnings())
-  {
     ROS_WARN_STREAM(warning);
-  }
   for (const std::string& joint : names_.unsupported_joints)
-  {
     ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
-  }
   simulator_.setFailurePolicy(parameters.on_failure);
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
   setServoGains();
@@ -78,12 +74,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
 void SimulatorNode::setServoGains()
 {
   for (const auto& gains : parameters_.servo_gains)
-  {
     if (gains.first != "default" && findJoint(names_, gains.first) < 0)
-    {
       throw ParameterError("~servo_gains: unknown joint '" + gains.first + "'");
-    }
-  }
   for (const int index : names_.actuated)
   {
     const JointHandle& joint = names_.joints[index];
@@ -224,9 +216,7 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
     }
     response.success = done == request.n && outcome != Outcome::FAILED && outcome != Outcome::PAUSED;
     if (!response.success)
-    {
       response.message = "stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps";
-    }
     outcome_ = outcome == Outcome::PAUSED ? Outcome::GO_ON : outcome;
     response.report = publisher_.report(pacer_.realTimeFactor());
   }
@@ -253,9 +243,7 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
   {
     reportFailure(where);
     if (parameters_.on_failure == FailurePolicy::STOP)
-    {
       return Outcome::FAILED;
-    }
     if (parameters_.on_failure == FailurePolicy::PAUSE)
     {
       setPaused(true);
@@ -275,9 +263,7 @@ SimulatorNode::Outcome SimulatorNode::advance()
   publisher_.publish(pacer_.realTimeFactor());
   const bool free_run = parameters_.real_time_factor <= 0.0 || paused_;
   if (steps_done_ % (free_run ? FREE_RUN_WINDOW : PACED_WINDOW) == 0)
-  {
     holdForSubscribers();
-  }
   return judge("step " + std::to_string(simulator_.report().step));
 }
 
@@ -330,9 +316,7 @@ void SimulatorNode::runStep()
 {
   outcome_ = advance();
   if (outcome_ == Outcome::PAUSED)
-  {
     outcome_ = Outcome::GO_ON;
-  }
   double wait = pacer_.wait(simulator_.time(), wallSeconds());
   serveCallbacks(0.0);
   while (ros::ok() && wait > 0.0 && !paused_)
@@ -346,28 +330,16 @@ int SimulatorNode::run()
 {
   pacer_.restart(simulator_.time(), wallSeconds());
   while (ros::ok() && outcome_ == Outcome::GO_ON)
-  {
     if (paused_ || waiting_)
-    {
       idle();
-    }
     else
-    {
       runStep();
-    }
-  }
   if (outcome_ != Outcome::GO_ON)
-  {
     holdForSubscribers();  // the last messages, before the connections close
-  }
   if (failure_lines_.heldBack() > 0)
-  {
     ROS_WARN_STREAM("failed steps not shown at the end: " << failure_lines_.heldBack());
-  }
   for (const auto& [subscriber, count] : delivery_.dropped())
-  {
     ROS_INFO_STREAM(subscriber << ": the subscriber dropped " << count << " messages");
-  }
   return outcome_ == Outcome::FAILED ? 1 : 0;
 }
 

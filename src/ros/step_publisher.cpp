@@ -74,16 +74,12 @@ std::uint32_t StepPublisher::subscribers(const std::string& topic) const
                                                    &step_report_publisher_,  &markers_publisher_,
                                                    &clock_publisher_,        &tf_publisher_};
   for (const ros::Publisher& publisher : odometry_publishers_)
-  {
     publishers.push_back(&publisher);
-  }
   std::string known;
   for (const ros::Publisher* publisher : publishers)
   {
     if (publisher->getTopic() == topic)
-    {
       return publisher->getNumSubscribers();
-    }
     known += (known.empty() ? "" : ", ") + publisher->getTopic();
   }
   throw ParameterError("~wait_for_subscribers: found '" + topic + "', expected topics of this node: " + known);
@@ -107,7 +103,7 @@ void StepPublisher::publishClock(double seconds)
 
 void StepPublisher::publishOdometry(const ros::Time& stamp)
 {
-  for (std::size_t body = 0; body < odometry_publishers_.size(); ++body)
+  for (size_t body = 0; body < odometry_publishers_.size(); ++body)
   {
     if (listened(odometry_publishers_[body]))
     {
@@ -120,9 +116,7 @@ void StepPublisher::publishOdometry(const ros::Time& stamp)
 void StepPublisher::publishTransforms(const ros::Time& stamp)
 {
   if (!publish_base_tf_ || !listened(tf_publisher_))
-  {
     return;
-  }
   transforms_.transforms.clear();
   for (int body = 0; body < simulator_.bodyCount(); ++body)
   {
@@ -133,9 +127,7 @@ void StepPublisher::publishTransforms(const ros::Time& stamp)
     }
   }
   if (!transforms_.transforms.empty())
-  {
     tf_publisher_.publish(transforms_);
-  }
 }
 
 void StepPublisher::publishMarkers(const ros::Time& stamp)
@@ -152,9 +144,7 @@ void StepPublisher::publish(double real_time_factor)
   const std::uint64_t step = simulator_.report().step;
   const ros::Time stamp = toStamp(simulator_.time());
   if (clock_divider_.due(step))
-  {
     publishClock(simulator_.time());
-  }
   if (state_divider_.due(step))
   {
     if (listened(joint_states_publisher_))
@@ -175,13 +165,9 @@ void StepPublisher::publish(double real_time_factor)
     publishOdometry(stamp);
   }
   if (tf_divider_.due(step))
-  {
     publishTransforms(stamp);
-  }
   if (marker_divider_.due(step))
-  {
     publishMarkers(stamp);
-  }
 }
 
 }  // namespace frictional_contact_sim

@@ -75,13 +75,13 @@ void CsvRecorder::record(const Simulator& simulator, bool with_step)
 void CsvRecorder::recordContacts(const Simulator& simulator)
 {
   const auto bodyName = [&](const ShapeInfo& shape)
-  { return shape.robot >= 0 ? simulator.bodyName(shape.robot) : std::string("ground"); };
+  { return shape.body >= 0 ? simulator.bodyName(shape.body) : std::string("ground"); };
   for (const ContactState& contact : simulator.contacts())
   {
     const ShapeInfo& a = simulator.shape(contact.shape_a);
     const ShapeInfo& b = simulator.shape(contact.shape_b);
-    contacts_ << simulator.time() << ',' << contact.id << ',' << bodyName(a) << ',' << bodyName(b) << ',' << a.link
-              << ',' << b.link;
+    contacts_ << simulator.time() << ',' << contact.id << ',' << bodyName(a) << ',' << bodyName(b) << ',' << a.link_name
+              << ',' << b.link_name;
     write(contacts_, contact.position);
     write(contacts_, contact.normal);
     contacts_ << ',' << contact.gap;

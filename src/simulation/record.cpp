@@ -87,8 +87,8 @@ int Simulator::Impl::countIslands()
   };
   for (const ContactState& contact : state.rows.contacts)
   {
-    const int a = collision.shape(contact.shape_a).robot;
-    const int b = collision.shape(contact.shape_b).robot;
+    const int a = collision.shape(contact.shape_a).body;
+    const int b = collision.shape(contact.shape_b).body;
     if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
       island_of[root(a)] = root(b);
   }

@@ -6,7 +6,7 @@ namespace frictional_contact_sim
 {
 Eigen::Isometry3d rootPose(const Simulator& simulator, int body)
 {
-  return simulator.data(body).body_pose.front();
+  return simulator.data(body).link_pose.front();
 }
 
 Vector6d rootVelocity(const Simulator& simulator, int body)

@@ -159,7 +159,7 @@ std::string firstDifference(const SimulationState& a, const SimulationState& b)
   Listing list_b;
   show(list_a, a);
   show(list_b, b);
-  for (std::size_t i = 0; i < list_a.entries.size() && i < list_b.entries.size(); ++i)
+  for (size_t i = 0; i < list_a.entries.size() && i < list_b.entries.size(); ++i)
     if (list_a.entries[i] != list_b.entries[i])
       return list_a.entries[i].first + " (entry " + std::to_string(i) + ")";
   return list_a.entries.size() == list_b.entries.size() ? "" : "the number of entries";

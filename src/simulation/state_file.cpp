@@ -16,7 +16,7 @@ namespace
 {
 const std::string MAGIC = "FCSSTATE";
 constexpr std::uint64_t VERSION = 1;
-constexpr std::size_t HEADER = 8 + 4 + 8 + 8;  ///< bytes
+constexpr size_t HEADER = 8 + 4 + 8 + 8;  ///< bytes
 
 void append(std::string& bytes, std::uint64_t value, int width)
 {
@@ -24,7 +24,7 @@ void append(std::string& bytes, std::uint64_t value, int width)
     bytes.push_back(static_cast<char>((value >> (8 * byte)) & 0xffU));
 }
 
-std::uint64_t parse(const std::string& bytes, std::size_t at, int width)
+std::uint64_t parse(const std::string& bytes, size_t at, int width)
 {
   std::uint64_t value = 0;
   for (int byte = 0; byte < width; ++byte)
@@ -94,7 +94,7 @@ private:
   }
 
   std::string bytes_;
-  std::size_t at_ = 0;
+  size_t at_ = 0;
 };
 
 void expect(StateArchive& archive, const std::string& what, const std::string& expected)
@@ -135,7 +135,7 @@ void checkNumbers(const Simulator& simulator, const SimulationState& state)
 {
   if (!(state.dt > 0.0) || !std::isfinite(state.dt) || !std::isfinite(state.time()))
     throw StateError("dt or the time is not a finite number > 0");
-  for (std::size_t b = 0; b < state.bodies.size(); ++b)
+  for (size_t b = 0; b < state.bodies.size(); ++b)
   {
     const BodyState& body = state.bodies[b];
     if (!body.q.allFinite() || !body.v.allFinite() || !body.base_pose.matrix().allFinite())

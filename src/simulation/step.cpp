@@ -53,11 +53,11 @@ double Simulator::Impl::lookAhead() const
 {
   double fastest = 0.0;
   for (const Body& body : bodies)
-    for (size_t link = 0; link < body.model.tree.bodies.size(); ++link)
+    for (size_t link = 0; link < body.model.tree.links.size(); ++link)
     {
       if (body.model.chains[link].empty() && !body.model.base_motion.active)
         continue;
-      const Vector6d velocity = pointVelocity(body.end, static_cast<int>(link), body.end.body_pose[link].translation());
+      const Vector6d velocity = pointVelocity(body.end, static_cast<int>(link), body.end.link_pose[link].translation());
       fastest = std::max(fastest, velocity.head<3>().norm() + velocity.tail<3>().norm() * body.model.extents[link]);
     }
   return MINIMUM_MARGIN + 2.0 * context.dt * fastest;

@@ -177,7 +177,7 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
 /** Adds the body's shapes, puts it on the ground where no pose is given, and gives it commands and wrenches. */
 void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world)
 {
-  const int handle = world.collision.addRobot(body.model.tree);  // bodies and handles count alike
+  const int handle = world.collision.addBody(body.model.tree);  // bodies and handles count alike
   for (const auto& [link_1, link_2] : spec.disable_collisions)
     world.collision.disablePair(handle, link_1, link_2);
   Body moved(body.model, body.state);
@@ -207,11 +207,11 @@ std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
   for (int handle = 0; handle < world.collision.shapeCount(); ++handle)
   {
     const ShapeInfo& shape = world.collision.shape(handle);
-    if (shape.robot < 0)
+    if (shape.body < 0)
       sides.push_back({"ground", world.scenario.ground->friction.value_or(-1.0)});
     else
       sides.push_back(
-          {world.scenario.bodies[shape.robot].material, world.bodies[shape.robot].tree.shapes[shape.index].friction});
+          {world.scenario.bodies[shape.body].material, world.bodies[shape.body].tree.shapes[shape.index].friction});
   }
   return sides;
 }

@@ -55,7 +55,7 @@ void Admm::updateShift(const DelassusProblem& problem)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     const int row = problem.W.offset(i);
     if (law.isCoulomb() && law.coefficient > 0.0)
       convex_.c[row] = problem.q[row] + law.coefficient * lambda_.segment(row + 1, law.dimension() - 1).norm();

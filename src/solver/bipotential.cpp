@@ -75,7 +75,7 @@ void Bipotential::updateCopies()
 {
   x_ = relaxed_z_ + alpha_;
   w_ = relaxed_c_ + beta_;
-  for (std::size_t i = 0; i < scaled_.laws().size(); ++i)
+  for (size_t i = 0; i < scaled_.laws().size(); ++i)
   {
     const Law& law = scaled_.laws()[i];
     const int row = scaled_.offset(static_cast<int>(i));

@@ -29,7 +29,7 @@ CadouxBroyden::CadouxBroyden(const CadouxBroydenOptions& options, std::unique_pt
 Eigen::VectorXd CadouxBroyden::apply(const Eigen::VectorXd& x) const
 {
   Eigen::VectorXd y = -x;
-  for (std::size_t k = 0; k < left_.size(); ++k)
+  for (size_t k = 0; k < left_.size(); ++k)
     y += right_[k].dot(x) * left_[k];
   return y;
 }
@@ -37,7 +37,7 @@ Eigen::VectorXd CadouxBroyden::apply(const Eigen::VectorXd& x) const
 Eigen::VectorXd CadouxBroyden::applyTransposed(const Eigen::VectorXd& x) const
 {
   Eigen::VectorXd y = -x;
-  for (std::size_t k = 0; k < left_.size(); ++k)
+  for (size_t k = 0; k < left_.size(); ++k)
     y += left_[k].dot(x) * right_[k];
   return y;
 }

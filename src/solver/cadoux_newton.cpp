@@ -47,8 +47,8 @@ void CadouxNewtonOptions::validate() const
 void CadouxNewtonStep::activate(const DelassusProblem& problem, const SlipMap& map)
 {
   const int blocks = problem.W.blocks();
-  jacobian_.resize(static_cast<std::size_t>(blocks));
-  position_.resize(static_cast<std::size_t>(problem.W.rows()));
+  jacobian_.resize(static_cast<size_t>(blocks));
+  position_.resize(static_cast<size_t>(problem.W.rows()));
   x_ = map.r();
   int active = 0;
   for (int i = 0; i < blocks; ++i)
@@ -56,11 +56,11 @@ void CadouxNewtonStep::activate(const DelassusProblem& problem, const SlipMap& m
     const int row = problem.W.offset(i);
     const int d = problem.W.dimension(i);
     x_.segment(row, d) -= map.convexProblem().step_lengths[i] * map.shiftedVelocity().segment(row, d);
-    SquareMatrix<3>& P = jacobian_[static_cast<std::size_t>(i)];
-    P = projectionJacobian(problem.laws[static_cast<std::size_t>(i)], x_, row);
+    SquareMatrix<3>& P = jacobian_[static_cast<size_t>(i)];
+    P = projectionJacobian(problem.laws[static_cast<size_t>(i)], x_, row);
     const bool fixed = P.isZero(0.0);
     for (int k = row; k < row + d; ++k)
-      position_[static_cast<std::size_t>(k)] = fixed ? -1 : active++;
+      position_[static_cast<size_t>(k)] = fixed ? -1 : active++;
   }
   active_ = active;
   right_.resize(problem.W.rows());
@@ -72,9 +72,9 @@ void CadouxNewtonStep::fillRows(const DelassusProblem& problem, const SlipMap& m
                                 Eigen::Map<Eigen::MatrixXd>& system)
 {
   const int row = problem.W.offset(i);
-  const int first = position_[static_cast<std::size_t>(row)];
-  const SquareMatrix<D> P = jacobian_[static_cast<std::size_t>(i)].topLeftCorner<D, D>();
-  const double mu = D > 1 ? problem.laws[static_cast<std::size_t>(i)].coefficient : 0.0;
+  const int first = position_[static_cast<size_t>(row)];
+  const SquareMatrix<D> P = jacobian_[static_cast<size_t>(i)].topLeftCorner<D, D>();
+  const double mu = D > 1 ? problem.laws[static_cast<size_t>(i)].coefficient : 0.0;
   SquareMatrix<D> G = SquareMatrix<D>::Identity();
   for (int k = 1; k < D && speed_[i] > 0.0; ++k)
     G(0, k) = mu * map.u()[row + k] / speed_[i];
@@ -83,7 +83,7 @@ void CadouxNewtonStep::fillRows(const DelassusProblem& problem, const SlipMap& m
   problem.W.visitRow(i,
                      [&](int column, const double* w, int stride)
                      {
-                       const int target = position_[static_cast<std::size_t>(column)];
+                       const int target = position_[static_cast<size_t>(column)];
                        if (target < 0)
                          return;
                        Vector<D> w_column;
@@ -111,7 +111,7 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
   Eigen::Map<Eigen::MatrixXd> system = lu_.start(active_);
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    if (position_[static_cast<std::size_t>(problem.W.offset(i))] < 0)
+    if (position_[static_cast<size_t>(problem.W.offset(i))] < 0)
       continue;
     if (problem.W.dimension(i) == 3)
       fillRows<3>(problem, map, i, system);
@@ -125,8 +125,8 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
   lu_.solve(right_.head(active_));
   dr_.setZero(problem.W.rows());
   for (int row = 0; row < problem.W.rows(); ++row)
-    if (position_[static_cast<std::size_t>(row)] >= 0)
-      dr_[row] = right_[position_[static_cast<std::size_t>(row)]];
+    if (position_[static_cast<size_t>(row)] >= 0)
+      dr_[row] = right_[position_[static_cast<size_t>(row)]];
   // ds = F - s + S W dr
   problem.W.apply(dr_, du_);
   ds.resize(map.size());

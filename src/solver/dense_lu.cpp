@@ -87,7 +87,7 @@ VECTOR_CLONES void substitute(const double* values, const int* pivots, int size,
 
 void DenseLu::reserve(int size)
 {
-  const auto count = static_cast<std::size_t>(size);
+  const auto count = static_cast<size_t>(size);
   if (values_.size() < count * count)
     values_.resize(count * count);
   if (pivots_.size() < count)

@@ -55,7 +55,7 @@ void FbSystem::set(const DelassusProblem& problem, const Eigen::VectorXd& step_l
 double FbSystem::evaluate(const Eigen::VectorXd& c, const Eigen::VectorXd& z, double alpha, bool jacobians)
 {
   double sum = 0.0;
-  for (std::size_t i = 0; i < contacts_.laws().size(); ++i)
+  for (size_t i = 0; i < contacts_.laws().size(); ++i)
   {
     const Law& law = contacts_.laws()[i];
     const int row = contacts_.offset(static_cast<int>(i));
@@ -75,7 +75,7 @@ double FbSystem::evaluate(const Eigen::VectorXd& c, const Eigen::VectorXd& z, do
 
 void FbSystem::gradient(Eigen::VectorXd& g)
 {
-  for (std::size_t i = 0; i < contacts_.laws().size(); ++i)
+  for (size_t i = 0; i < contacts_.laws().size(); ++i)
   {
     const int d = contacts_.laws()[i].dimension();
     const int row = contacts_.offset(static_cast<int>(i));
@@ -83,17 +83,17 @@ void FbSystem::gradient(Eigen::VectorXd& g)
     {
       work_[row + b] = 0.0;
       for (int a = 0; a < d; ++a)
-        work_[row + b] += by_c_[9 * i + static_cast<std::size_t>(d * a + b)] * phi_[row + a];
+        work_[row + b] += by_c_[9 * i + static_cast<size_t>(d * a + b)] * phi_[row + a];
     }
   }
   contacts_.applyTransposed(work_, g);
-  for (std::size_t i = 0; i < contacts_.laws().size(); ++i)
+  for (size_t i = 0; i < contacts_.laws().size(); ++i)
   {
     const int d = contacts_.laws()[i].dimension();
     const int row = contacts_.offset(static_cast<int>(i));
     for (int b = 0; b < d; ++b)
       for (int a = 0; a < d; ++a)
-        g[row + b] += by_z_[9 * i + static_cast<std::size_t>(d * a + b)] * phi_[row + a];
+        g[row + b] += by_z_[9 * i + static_cast<size_t>(d * a + b)] * phi_[row + a];
   }
 }
 

@@ -44,14 +44,14 @@ double FixedPoint::evaluate(const DelassusProblem& problem, const SolveContext& 
   scaled_.unscaleVelocity(field, u_);
   const double value = context.residual(problem, u_, r_);
   for (int i = 0; i < problem.W.blocks(); ++i)
-    map_.field(scaled_.laws()[static_cast<std::size_t>(i)], &field[scaled_.offset(i)]);
+    map_.field(scaled_.laws()[static_cast<size_t>(i)], &field[scaled_.offset(i)]);
   return value;
 }
 
 void FixedPoint::advance(double theta)
 {
   trial_ = z_ - theta * field_;
-  for (std::size_t i = 0; i < scaled_.laws().size(); ++i)
+  for (size_t i = 0; i < scaled_.laws().size(); ++i)
   {
     const int row = scaled_.offset(static_cast<int>(i));
     map_.project(scaled_.laws()[i], &z_[row], &trial_[row]);

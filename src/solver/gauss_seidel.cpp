@@ -24,7 +24,7 @@ double updateContact(const DelassusProblem& problem, int i, double relaxation, E
   const Vector<D> old = impulse;
   const Vector<D> u = problem.W.rowProduct<D>(i, r) + problem.q.segment<D>(problem.W.offset(i));
   const Vector<D> free = u - W * old;
-  impulse = solveCoulomb(W, free, problem.laws[static_cast<std::size_t>(i)].coefficient);
+  impulse = solveCoulomb(W, free, problem.laws[static_cast<size_t>(i)].coefficient);
   if (relaxation != 1.0)
     impulse = old + relaxation * (Vector<D>(impulse) - old);
   const Vector<D> change = W * (Vector<D>(impulse) - old);
@@ -64,7 +64,7 @@ double GaussSeidel::sweep(const DelassusProblem& problem, Eigen::VectorXd& r) co
   double scale = std::numeric_limits<double>::min();
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     if (law.type == LawType::COULOMB_3D)
       change = std::max(change, updateContact<3>(problem, i, options_.relaxation, r, scale));
     else if (law.type == LawType::COULOMB_2D)

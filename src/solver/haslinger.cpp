@@ -29,12 +29,12 @@ void Haslinger::updateThresholds(const DelassusProblem& problem, double relaxati
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     if (!law.isCoulomb())
       continue;
     const double target = law.coefficient * std::max(0.0, r_[problem.W.offset(i)]);
     thresholds_[i] += relaxation * (target - thresholds_[i]);
-    convex_.sets[static_cast<std::size_t>(i)].parameter = thresholds_[i];
+    convex_.sets[static_cast<size_t>(i)].parameter = thresholds_[i];
   }
 }
 

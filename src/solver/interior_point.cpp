@@ -35,7 +35,7 @@ void InteriorPoint::updateSlip(const DelassusProblem& problem)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     if (!law.isCoulomb() || law.coefficient == 0.0)
       continue;
     const int row = problem.W.offset(i);

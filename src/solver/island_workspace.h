@@ -18,7 +18,7 @@ namespace frictional_contact_sim
 struct IslandSlot
 {
   int rows = 0;
-  std::size_t blocks = 0;
+  size_t blocks = 0;
   long last_used = 0;
   DelassusProblem problem;
   Eigen::VectorXd step_lengths;
@@ -32,10 +32,10 @@ void reportNoMemory(const DelassusProblem& problem, SolverResult& result);
 struct IslandWorkspace
 {
   /// Shapes remembered; beyond, the one that was not used for longest gives way.
-  static constexpr std::size_t MAX_SLOTS = 16;
+  static constexpr size_t MAX_SLOTS = 16;
 
   /** @brief The slot of this shape, or one to be used for it. */
-  IslandSlot& slot(int rows, std::size_t blocks);
+  IslandSlot& slot(int rows, size_t blocks);
   /** @brief Copies the island's laws, q, step lengths and r to its slot; those given are of the whole. */
   IslandSlot& gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& step_lengths,
                      const Eigen::VectorXd& r);

@@ -50,12 +50,12 @@ int Islands::uniteSparse(const DelassusOperator& W)
 int Islands::uniteMatrixFree(const DelassusOperator& W)
 {
   int count = W.blocks();
-  toucher_.assign(static_cast<std::size_t>(W.halfColumns()), -1);
+  toucher_.assign(static_cast<size_t>(W.halfColumns()), -1);
   for (int i = 0; i < W.blocks() && count > 1; ++i)
     W.visitHalfRow(i,
                    [&](int column, const double*, int)
                    {
-                     int& toucher = toucher_[static_cast<std::size_t>(column)];
+                     int& toucher = toucher_[static_cast<size_t>(column)];
                      if (toucher >= 0)
                        count -= sets_.unite(i, toucher) ? 1 : 0;
                      toucher = i;
@@ -71,24 +71,24 @@ int Islands::find(const DelassusOperator& W)
   const int count = W.isDense() ? uniteDense(W) : W.isMatrixFree() ? uniteMatrixFree(W) : uniteSparse(W);
   if (count <= 1)
     return count;
-  const auto size = static_cast<std::size_t>(count);
-  island_.resize(static_cast<std::size_t>(blocks));
+  const auto size = static_cast<size_t>(count);
+  island_.resize(static_cast<size_t>(blocks));
   begin_.assign(size + 1, 0);
   rows_.assign(size, 0);
   int next = 0;
   for (int i = 0; i < blocks; ++i)
   {
     const int first = sets_.root(i);
-    const int k = first == i ? next++ : island_[static_cast<std::size_t>(first)];
-    island_[static_cast<std::size_t>(i)] = k;
-    ++begin_[static_cast<std::size_t>(k) + 1];
-    rows_[static_cast<std::size_t>(k)] += W.dimension(i);
+    const int k = first == i ? next++ : island_[static_cast<size_t>(first)];
+    island_[static_cast<size_t>(i)] = k;
+    ++begin_[static_cast<size_t>(k) + 1];
+    rows_[static_cast<size_t>(k)] += W.dimension(i);
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  members_.resize(static_cast<std::size_t>(blocks));
+  members_.resize(static_cast<size_t>(blocks));
   for (int i = 0; i < blocks; ++i)
-    members_[static_cast<std::size_t>(begin_[static_cast<std::size_t>(island_[static_cast<std::size_t>(i)])]++)] = i;
-  for (std::size_t k = size; k > 0; --k)
+    members_[static_cast<size_t>(begin_[static_cast<size_t>(island_[static_cast<size_t>(i)])]++)] = i;
+  for (size_t k = size; k > 0; --k)
     begin_[k] = begin_[k - 1];
   begin_[0] = 0;
   order_.resize(size);
@@ -96,7 +96,7 @@ int Islands::find(const DelassusOperator& W)
   std::sort(order_.begin(), order_.end(),
             [this](int a, int b)
             {
-              const int rows_a = rows_[static_cast<std::size_t>(a)], rows_b = rows_[static_cast<std::size_t>(b)];
+              const int rows_a = rows_[static_cast<size_t>(a)], rows_b = rows_[static_cast<size_t>(b)];
               return rows_a != rows_b ? rows_a < rows_b : a < b;
             });
   return count;
@@ -104,7 +104,7 @@ int Islands::find(const DelassusOperator& W)
 
 void Islands::laws(int k, std::vector<int>& laws) const
 {
-  const auto island = static_cast<std::size_t>(order_[static_cast<std::size_t>(k)]);
+  const auto island = static_cast<size_t>(order_[static_cast<size_t>(k)]);
   laws.assign(members_.begin() + begin_[island], members_.begin() + begin_[island + 1]);
 }
 

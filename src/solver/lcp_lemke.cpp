@@ -100,7 +100,7 @@ Maps makeMaps(const DelassusProblem& problem, int facets, const Eigen::VectorXd&
   maps.r0.setZero(rows);
   maps.d.setZero(size);
   int first = 0;
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
   {
     const Law& law = problem.laws[i];
     const auto index = static_cast<Eigen::Index>(i);
@@ -121,7 +121,7 @@ Maps makeMaps(const DelassusProblem& problem, int facets, const Eigen::VectorXd&
 std::vector<Eigen::Index> bilateralRows(const DelassusProblem& problem)
 {
   std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
     if (problem.laws[i].type == LawType::BILATERAL)
       rows.push_back(problem.W.offset(static_cast<int>(i)));
   return rows;
@@ -154,9 +154,9 @@ ContactLcp makeContactLcp(const DelassusProblem& problem, int facets, const Eige
     Eigen::VectorXd constant(count);
     for (Eigen::Index a = 0; a < count; ++a)
     {
-      const Eigen::Index row = bilateral[static_cast<std::size_t>(a)];
+      const Eigen::Index row = bilateral[static_cast<size_t>(a)];
       for (Eigen::Index b = 0; b < count; ++b)
-        block(a, b) = W(row, bilateral[static_cast<std::size_t>(b)]);
+        block(a, b) = W(row, bilateral[static_cast<size_t>(b)]);
       map.row(a) = -W.row(row) * maps.R;
       constant[a] = -W.row(row).dot(maps.r0) - q[row];
     }
@@ -167,8 +167,8 @@ ContactLcp makeContactLcp(const DelassusProblem& problem, int facets, const Eige
     constant = factor.solve(constant).eval();
     for (Eigen::Index a = 0; a < count; ++a)
     {
-      maps.R.row(bilateral[static_cast<std::size_t>(a)]) = map.row(a);
-      maps.r0[bilateral[static_cast<std::size_t>(a)]] = constant[a];
+      maps.R.row(bilateral[static_cast<size_t>(a)]) = map.row(a);
+      maps.r0[bilateral[static_cast<size_t>(a)]] = constant[a];
     }
   }
   ContactLcp lcp;
@@ -193,7 +193,7 @@ bool LcpLemke::align(const DelassusProblem& problem, const Eigen::VectorXd& r, d
   bool changed = false;
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     if (law.type != LawType::COULOMB_3D || !isFrictional(law))
       continue;
     const Eigen::Vector2d slip = u_.segment<2>(problem.W.offset(i) + 1);

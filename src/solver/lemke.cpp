@@ -52,38 +52,38 @@ LemkePath::LemkePath(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const L
     T_.col(n_) = -options.covering;
   else
     T_.col(n_).setConstant(-1.0);
-  row_of_.assign(static_cast<std::size_t>(2 * n_ + 1), -1);
+  row_of_.assign(static_cast<size_t>(2 * n_ + 1), -1);
   column_of_ = row_of_;
   for (int i = 0; i < n_; ++i)
   {
     basic_.push_back(n_ + i);
     nonbasic_.push_back(i);
-    row_of_[static_cast<std::size_t>(n_ + i)] = i;
-    column_of_[static_cast<std::size_t>(i)] = i;
+    row_of_[static_cast<size_t>(n_ + i)] = i;
+    column_of_[static_cast<size_t>(i)] = i;
   }
   nonbasic_.push_back(2 * n_);
-  column_of_[static_cast<std::size_t>(2 * n_)] = n_;
+  column_of_[static_cast<size_t>(2 * n_)] = n_;
 }
 
 void LemkePath::pivot(int row, int column)
 {
   exchange(T_, b_, row, column, work_column_, work_row_);
-  const int leaving = basic_[static_cast<std::size_t>(row)];
-  const int entering = nonbasic_[static_cast<std::size_t>(column)];
-  basic_[static_cast<std::size_t>(row)] = entering;
-  nonbasic_[static_cast<std::size_t>(column)] = leaving;
-  row_of_[static_cast<std::size_t>(entering)] = row;
-  column_of_[static_cast<std::size_t>(entering)] = -1;
-  row_of_[static_cast<std::size_t>(leaving)] = -1;
-  column_of_[static_cast<std::size_t>(leaving)] = column;
+  const int leaving = basic_[static_cast<size_t>(row)];
+  const int entering = nonbasic_[static_cast<size_t>(column)];
+  basic_[static_cast<size_t>(row)] = entering;
+  nonbasic_[static_cast<size_t>(column)] = leaving;
+  row_of_[static_cast<size_t>(entering)] = row;
+  column_of_[static_cast<size_t>(entering)] = -1;
+  row_of_[static_cast<size_t>(leaving)] = -1;
+  column_of_[static_cast<size_t>(leaving)] = column;
 }
 
 double LemkePath::inverseEntry(int row, int j) const
 {
-  const int column = column_of_[static_cast<std::size_t>(n_ + j)];
+  const int column = column_of_[static_cast<size_t>(n_ + j)];
   if (column >= 0)
     return T_(row, column);
-  return row_of_[static_cast<std::size_t>(n_ + j)] == row ? 1.0 : 0.0;
+  return row_of_[static_cast<size_t>(n_ + j)] == row ? 1.0 : 0.0;
 }
 
 void LemkePath::breakTies(int column)
@@ -98,7 +98,7 @@ void LemkePath::breakTies(int column)
       smallest = std::min(smallest, ratio);
       largest = std::max(largest, std::abs(ratio));
     }
-    std::size_t kept = 0;
+    size_t kept = 0;
     for (int row : ties_)
       if (inverseEntry(row, j) / T_(row, column) <= smallest + options_.tie_tolerance * largest)
         ties_[kept++] = row;
@@ -125,7 +125,7 @@ int LemkePath::blockingRow(int column)
   for (int row = 0; row < n_; ++row)
     if (T_(row, column) > smallest_pivot && std::max(b_[row], 0.0) / T_(row, column) <= limit)
     {
-      if (basic_[static_cast<std::size_t>(row)] == 2 * n_)
+      if (basic_[static_cast<size_t>(row)] == 2 * n_)
         return row;  // the artificial variable may leave: done
       ties_.push_back(row);
     }
@@ -145,13 +145,13 @@ LcpStatus LemkePath::follow(int max_pivots, int& pivots)
   int column = n_;
   for (pivots = 1; pivots <= max_pivots; ++pivots)
   {
-    const int leaving = basic_[static_cast<std::size_t>(row)];
+    const int leaving = basic_[static_cast<size_t>(row)];
     pivot(row, column);
     if (leaving == 2 * n_)
       return LcpStatus::SOLVED;
     if (pivots % std::max(ASK_EVERY / n_ / n_, 1) == 0 && options_.interrupted && options_.interrupted())
       return LcpStatus::INTERRUPTED;
-    column = column_of_[static_cast<std::size_t>(leaving < n_ ? leaving + n_ : leaving - n_)];
+    column = column_of_[static_cast<size_t>(leaving < n_ ? leaving + n_ : leaving - n_)];
     row = blockingRow(column);
     if (row < 0)
       return LcpStatus::RAY;
@@ -162,8 +162,8 @@ LcpStatus LemkePath::follow(int max_pivots, int& pivots)
 
 std::vector<bool> LemkePath::basic() const
 {
-  std::vector<bool> result(static_cast<std::size_t>(n_));
-  for (std::size_t i = 0; i < result.size(); ++i)
+  std::vector<bool> result(static_cast<size_t>(n_));
+  for (size_t i = 0; i < result.size(); ++i)
     result[i] = row_of_[i] >= 0;
   return result;
 }
@@ -201,7 +201,7 @@ double lcpResidual(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const Eig
 void solveBasis(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const std::vector<bool>& basic, LcpResult& result)
 {
   std::vector<Eigen::Index> index;
-  for (std::size_t i = 0; i < basic.size(); ++i)
+  for (size_t i = 0; i < basic.size(); ++i)
     if (basic[i])
       index.push_back(static_cast<Eigen::Index>(i));
   const auto size = static_cast<Eigen::Index>(index.size());
@@ -209,9 +209,9 @@ void solveBasis(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const std::v
   Eigen::VectorXd right(size);
   for (Eigen::Index i = 0; i < size; ++i)
   {
-    right[i] = -b[index[static_cast<std::size_t>(i)]];
+    right[i] = -b[index[static_cast<size_t>(i)]];
     for (Eigen::Index j = 0; j < size; ++j)
-      block(i, j) = M(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]);
+      block(i, j) = M(index[static_cast<size_t>(i)], index[static_cast<size_t>(j)]);
   }
   result.x.setZero(b.size());
   if (size > 0)
@@ -220,7 +220,7 @@ void solveBasis(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const std::v
     Eigen::VectorXd solution = factor.solve(right);
     solution += factor.solve(right - block * solution);
     for (Eigen::Index i = 0; i < size; ++i)
-      result.x[index[static_cast<std::size_t>(i)]] = solution[i];
+      result.x[index[static_cast<size_t>(i)]] = solution[i];
   }
   if (!result.x.allFinite())
     result.x.setZero();

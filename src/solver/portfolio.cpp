@@ -156,7 +156,7 @@ void Portfolio::solveApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     const int row = problem.W.offset(i);
     if (law.type == LawType::COULOMB_3D)
       r.segment<3>(row) = solveCoulomb(problem.W.diagonalBlock<3>(i), problem.q.segment<3>(row), law.coefficient);
@@ -181,7 +181,7 @@ bool anyWouldSlide(const DelassusProblem& problem)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const Law& law = problem.laws[static_cast<std::size_t>(i)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
     const int row = problem.W.offset(i);
     if (law.type == LawType::COULOMB_3D &&
         wouldSlide<3>(problem.W.diagonalBlock<3>(i), problem.q.segment<3>(row), law.coefficient))
@@ -200,7 +200,7 @@ void solveNormalsApart(const DelassusProblem& problem, Eigen::VectorXd& r)
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int row = problem.W.offset(i);
-    if (!problem.laws[static_cast<std::size_t>(i)].isCoulomb() || !(problem.q[row] < 0.0))
+    if (!problem.laws[static_cast<size_t>(i)].isCoulomb() || !(problem.q[row] < 0.0))
       continue;
     const double W =
         problem.W.dimension(i) == 3 ? problem.W.diagonalBlock<3>(i)(0, 0) : problem.W.diagonalBlock<2>(i)(0, 0);

@@ -13,7 +13,7 @@ class PrincipalPath
 {
 public:
   PrincipalPath(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options)
-    : options_(options), T_(-M), b_(b), swapped_(static_cast<std::size_t>(b.size()), false)
+    : options_(options), T_(-M), b_(b), swapped_(static_cast<size_t>(b.size()), false)
   {
     tolerance_ = options.pivot_tolerance * M.lpNorm<Eigen::Infinity>();
   }
@@ -83,7 +83,7 @@ LcpStatus PrincipalPath::follow(int max_pivots, int& pivots)
       if (std::abs(T_(row, row)) > tolerance_)
       {
         pivot(row, row);
-        swapped_[static_cast<std::size_t>(row)] = !swapped_[static_cast<std::size_t>(row)];
+        swapped_[static_cast<size_t>(row)] = !swapped_[static_cast<size_t>(row)];
         if (row == driving)
           break;
         continue;
@@ -98,7 +98,7 @@ LcpStatus PrincipalPath::follow(int max_pivots, int& pivots)
       b_.row(row).swap(b_.row(driving));
       T_.row(row).swap(T_.row(driving));
       for (const Eigen::Index i : {row, driving})
-        swapped_[static_cast<std::size_t>(i)] = !swapped_[static_cast<std::size_t>(i)];
+        swapped_[static_cast<size_t>(i)] = !swapped_[static_cast<size_t>(i)];
       T_.col(row).swap(T_.col(driving));
       break;
     }

@@ -39,7 +39,7 @@ void ScaledContacts::set(const DelassusProblem& problem, const Eigen::VectorXd& 
   work_.resize(problem.q.size());
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    Law& law = laws_[static_cast<std::size_t>(i)];
+    Law& law = laws_[static_cast<size_t>(i)];
     double normal = step_lengths[i], tangential = step_lengths[i];
     if (metric == Metric::DIRECTION)
       directionLengths(problem.W, i, step_lengths[i], normal, tangential);

@@ -77,11 +77,11 @@ void SemismoothNewton::prepare(const DelassusProblem& problem, const SolveContex
   rhs_.resize(rows);
   rho_normal_.resize(count);
   rho_tangential_.resize(count);
-  by_u_.resize(9 * static_cast<std::size_t>(count));
-  by_r_.resize(9 * static_cast<std::size_t>(count));
+  by_u_.resize(9 * static_cast<size_t>(count));
+  by_r_.resize(9 * static_cast<size_t>(count));
   lu_.reserve(problem.W.isDense() ? rows : std::min(rows, DENSE_LIMIT));
-  active_.reserve(static_cast<std::size_t>(rows));
-  position_.resize(static_cast<std::size_t>(rows));
+  active_.reserve(static_cast<size_t>(rows));
+  position_.resize(static_cast<size_t>(rows));
   for (int i = 0; i < count; ++i)
   {
     const double rho = context.step_lengths[i];
@@ -96,7 +96,7 @@ double SemismoothNewton::evaluate(const DelassusProblem& problem, const Eigen::V
   double merit = 0.0;
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const auto index = static_cast<std::size_t>(i);
+    const auto index = static_cast<size_t>(i);
     const int row = problem.W.offset(i);
     const Law& law = problem.laws[index];
     double* by_u = jacobians ? &by_u_[9 * index] : nullptr;

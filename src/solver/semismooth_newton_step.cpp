@@ -28,15 +28,15 @@ struct SemismoothNewton::Sparse
 /** Sets the matrix's shape and column starts: one entry for every stored entry of W with active row and column. */
 void SemismoothNewton::Sparse::countColumns(const DelassusProblem& problem, const std::vector<int>& position, int size)
 {
-  next.assign(static_cast<std::size_t>(size) + 1, 0);
+  next.assign(static_cast<size_t>(size) + 1, 0);
   for (int i = 0; i < problem.W.blocks(); ++i)
-    if (position[static_cast<std::size_t>(problem.W.offset(i))] >= 0)
+    if (position[static_cast<size_t>(problem.W.offset(i))] >= 0)
       problem.W.visitRow(i,
                          [&](int column, const double*, int)
                          {
-                           const int target = position[static_cast<std::size_t>(column)];
+                           const int target = position[static_cast<size_t>(column)];
                            if (target >= 0)
-                             next[static_cast<std::size_t>(target) + 1] += problem.W.dimension(i);
+                             next[static_cast<size_t>(target) + 1] += problem.W.dimension(i);
                          });
   std::partial_sum(next.begin(), next.end(), next.begin());
   SparseLu::Matrix& matrix = lu.matrix();
@@ -61,11 +61,11 @@ bool SemismoothNewton::direction(const DelassusProblem& problem)
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int d = problem.W.dimension(i);
-    const double* by_u = &by_u_[9 * static_cast<std::size_t>(i)];
+    const double* by_u = &by_u_[9 * static_cast<size_t>(i)];
     const bool fixed = std::all_of(by_u, by_u + d * d, [](double value) { return value == 0.0; });
     for (int row = problem.W.offset(i); row < problem.W.offset(i) + d; ++row)
     {
-      position_[static_cast<std::size_t>(row)] = fixed ? -1 : static_cast<int>(active_.size());
+      position_[static_cast<size_t>(row)] = fixed ? -1 : static_cast<int>(active_.size());
       if (!fixed)
         active_.push_back(row);
     }
@@ -73,7 +73,7 @@ bool SemismoothNewton::direction(const DelassusProblem& problem)
       continue;
     // B_i dr = -f with B_i = -I but for the coupling of a clipped friction to its normal impulse.
     const int row = problem.W.offset(i);
-    const double* by_r = &by_r_[9 * static_cast<std::size_t>(i)];
+    const double* by_r = &by_r_[9 * static_cast<size_t>(i)];
     step_[row] = -f_[row] / by_r[0];
     for (int k = 1; k < d; ++k)
       step_[row + k] = (f_[row + k] + by_r[d * k] * step_[row]) / -by_r[d * k + k];
@@ -87,7 +87,7 @@ bool SemismoothNewton::direction(const DelassusProblem& problem)
   if (!rhs_.head(size).allFinite())
     return false;
   for (Eigen::Index k = 0; k < size; ++k)
-    step_[active_[static_cast<std::size_t>(k)]] = rhs_[k];
+    step_[active_[static_cast<size_t>(k)]] = rhs_[k];
   if (perturbation_ == 0.0 && alpha_ <= REFINE_MAX)
     refine(problem);
   return true;
@@ -103,16 +103,16 @@ void SemismoothNewton::refine(const DelassusProblem& problem)
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const int row = problem.W.offset(i);
-    const int first = position_[static_cast<std::size_t>(row)];
+    const int first = position_[static_cast<size_t>(row)];
     if (first < 0)
       continue;
     const int d = problem.W.dimension(i);
-    const double* by_u = &by_u_[9 * static_cast<std::size_t>(i)];
+    const double* by_u = &by_u_[9 * static_cast<size_t>(i)];
     for (int k = 0; k < d; ++k)
       rhs_[first + k] = alpha_ * weight_[row] * std::inner_product(by_u + d * k, by_u + d * (k + 1), &step_[row], 0.0);
   }
   substitute(problem);
-  for (std::size_t k = 0; k < active_.size(); ++k)
+  for (size_t k = 0; k < active_.size(); ++k)
     step_[active_[k]] += rhs_[static_cast<Eigen::Index>(k)];
 }
 
@@ -125,10 +125,10 @@ template <int D, typename Sink>
 void SemismoothNewton::reducedRows(const DelassusProblem& problem, int i, Sink sink)
 {
   using Rows = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> A(&by_u_[9 * static_cast<std::size_t>(i)]);
-  const Eigen::Map<const Rows> B(&by_r_[9 * static_cast<std::size_t>(i)]);
+  const Eigen::Map<const Rows> A(&by_u_[9 * static_cast<size_t>(i)]);
+  const Eigen::Map<const Rows> B(&by_r_[9 * static_cast<size_t>(i)]);
   const int row = problem.W.offset(i);
-  const int first = position_[static_cast<std::size_t>(row)];
+  const int first = position_[static_cast<size_t>(row)];
   const double shift = alpha_ * weight_[row];
   Vector<D> right = -f_.segment<D>(row);
   problem.W.visitRow(i,
@@ -138,7 +138,7 @@ void SemismoothNewton::reducedRows(const DelassusProblem& problem, int i, Sink s
                        for (int k = 0; k < D; ++k)
                          w_column[k] = w[k * stride];
                        Vector<D> value = A * w_column;
-                       const int target = position_[static_cast<std::size_t>(column)];
+                       const int target = position_[static_cast<size_t>(column)];
                        if (target < 0)
                        {
                          right -= value * step_[column];
@@ -156,7 +156,7 @@ void SemismoothNewton::assemble(const DelassusProblem& problem, Sink sink)
 {
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
-    const int first = position_[static_cast<std::size_t>(problem.W.offset(i))];
+    const int first = position_[static_cast<size_t>(problem.W.offset(i))];
     if (first < 0)
       continue;
     const auto add = [&](int column, const auto& values) { sink(first, column, values); };
@@ -194,7 +194,7 @@ bool SemismoothNewton::factorSparse(const DelassusProblem& problem)
   assemble(problem,
            [&](int row, int column, const auto& values)
            {
-             int& place = sparse_->next[static_cast<std::size_t>(column)];
+             int& place = sparse_->next[static_cast<size_t>(column)];
              for (Eigen::Index k = 0; k < values.size(); ++k, ++place)
              {
                rows[place] = row + static_cast<int>(k);

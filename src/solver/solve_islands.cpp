@@ -75,7 +75,7 @@ void reportNoMemory(const DelassusProblem& problem, SolverResult& result)
   result.message = "not enough memory for " + std::to_string(problem.W.rows()) + " rows";
 }
 
-IslandSlot& IslandWorkspace::slot(int rows, std::size_t blocks)
+IslandSlot& IslandWorkspace::slot(int rows, size_t blocks)
 {
   ++clock;
   for (IslandSlot& slot : slots)
@@ -107,10 +107,10 @@ IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, cons
   slot.result.solution.r.resize(rows);
   slot.step_lengths.resize(static_cast<Eigen::Index>(laws.size()));
   int row = 0;
-  for (std::size_t k = 0; k < laws.size(); ++k)
+  for (size_t k = 0; k < laws.size(); ++k)
   {
     const int first = whole.W.offset(laws[k]), dimension = whole.W.dimension(laws[k]);
-    part.laws[k] = whole.laws[static_cast<std::size_t>(laws[k])];
+    part.laws[k] = whole.laws[static_cast<size_t>(laws[k])];
     part.q.segment(row, dimension) = whole.q.segment(first, dimension);
     slot.result.solution.r.segment(row, dimension) = r.segment(first, dimension);
     slot.step_lengths[static_cast<Eigen::Index>(k)] = step_lengths[laws[k]];
@@ -161,11 +161,11 @@ void Solver::solveIsland(const DelassusProblem& whole, const SolveContext& conte
     slot.method = sibling();
   Solver& method = slot.method != nullptr ? *slot.method : *this;
   std::vector<int>& position = islands_->position;
-  for (std::size_t i = 0; i < islands_->laws.size(); ++i)
-    position[static_cast<std::size_t>(islands_->laws[i])] = static_cast<int>(i);
+  for (size_t i = 0; i < islands_->laws.size(); ++i)
+    position[static_cast<size_t>(islands_->laws[i])] = static_cast<int>(i);
   slot.problem.W.assignBlocks(whole.W, islands_->laws, position, slot.problem.laws, stopping_.operator_kind);
   for (const int i : islands_->laws)
-    position[static_cast<std::size_t>(i)] = -1;
+    position[static_cast<size_t>(i)] = -1;
   SolverResult& result = slot.result;
   try
   {

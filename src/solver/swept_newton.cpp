@@ -60,7 +60,7 @@ double SweptNewton::sweptStep(const DelassusProblem& problem, const SolveContext
 {
   swept_.solution.r = r + step_;
   for (int i = 0; i < problem.W.blocks(); ++i)
-    projectImpulse(problem.laws[static_cast<std::size_t>(i)], &swept_.solution.r[problem.W.offset(i)]);
+    projectImpulse(problem.laws[static_cast<size_t>(i)], &swept_.solution.r[problem.W.offset(i)]);
   swept_.residual = UNKNOWN_RESIDUAL;
   SolveContext sweeps = context;
   sweeps.max_iterations = static_cast<int>(sweeps_);

@@ -74,7 +74,7 @@ std::string joined(const std::vector<std::string>& names)
 double median(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
+  const size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 

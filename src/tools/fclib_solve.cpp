@@ -98,7 +98,7 @@ void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, So
     waiting.update(k + 1);
   }
   std::sort(seconds.begin(), seconds.end());
-  const std::size_t middle = seconds.size() / 2;
+  const size_t middle = seconds.size() / 2;
   result.seconds = seconds.size() % 2 == 1 ? seconds[middle] : 0.5 * (seconds[middle - 1] + seconds[middle]);
 }
 

@@ -188,20 +188,26 @@ int main(int argc, char** argv)
     return command;
   };
   addRandomOptions(
-      *add("alea", "one random problem alea-m-n of the thesis", "OUT",
-           [&] { write(arguments.output, randomFamilyProblem(arguments.random), "alea", describe(arguments.random)); }),
+      *add(
+          "alea", "one random problem alea-m-n of the thesis", "OUT",
+          [&] { write(arguments.output, randomFamilyProblem(arguments.random), "alea", describe(arguments.random)); }),
       arguments.random);
-  add("alea-small", "the 15 problems of table 5.1 with fixed seeds", "DIR",
+  add(
+      "alea-small", "the 15 problems of table 5.1 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, smallRandomFamily(), randomFamilyProblem); });
-  add("alea-large", "the 15 problems of table 5.2 with fixed seeds", "DIR",
+  add(
+      "alea-large", "the 15 problems of table 5.2 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, largeRandomFamily(), randomFamilyProblem); });
   addRodOptions(
-      *add("rods", "super-helices hanging from a moving support, hair-m-n of the thesis", "OUT",
-           [&] { write(arguments.output, rodFamilyProblem(arguments.rods), "hair", describe(arguments.rods)); }),
+      *add(
+          "rods", "super-helices hanging from a moving support, hair-m-n of the thesis", "OUT",
+          [&] { write(arguments.output, rodFamilyProblem(arguments.rods), "hair", describe(arguments.rods)); }),
       arguments.rods);
-  add("rods-small", "15 problems of the sizes of table 5.3 with fixed seeds", "DIR",
+  add(
+      "rods-small", "15 problems of the sizes of table 5.3 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, smallRodFamily(), rodFamilyProblem); });
-  add("rods-large", "15 problems of the sizes of table 5.4 with fixed seeds", "DIR",
+  add(
+      "rods-large", "15 problems of the sizes of table 5.4 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, largeRodFamily(), rodFamilyProblem); });
   CLI::App* granular =
       add("granular", "balls on a cubic lattice under gravity", "OUT", [&] { writeGranular(arguments); });

@@ -153,8 +153,8 @@ json describe(const fcs::Simulator& simulator, const RunSummary& summary, bool i
   for (const fcs::ContactState& contact : simulator.contacts())
   {
     const Eigen::Vector3d force = contact.impulse / simulator.report().dt;
-    const int a = simulator.shape(contact.shape_a).robot;
-    const int b = simulator.shape(contact.shape_b).robot;
+    const int a = simulator.shape(contact.shape_a).body;
+    const int b = simulator.shape(contact.shape_b).body;
     if (a >= 0)
       forces[a] += force;
     if (b >= 0)
@@ -224,8 +224,8 @@ int runAll(const Options& options)
   }
   if (!options.save_state.empty())
     fcs::saveState(*simulator, options.save_state);
-  const bool identical = std::all_of(runs.begin(), runs.end(),
-                                     [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
+  const bool identical = std::all_of(
+      runs.begin(), runs.end(), [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
   const RunSummary& median = runs[runs.size() / 2];
   std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';

@@ -58,7 +58,7 @@ public:
     last_ = percent;
     text_ = text;
     shown_ = true;
-    const auto filled = static_cast<std::size_t>(percent * WIDTH / 100);
+    const auto filled = static_cast<size_t>(percent * WIDTH / 100);
     std::cerr << WIPE << '[' << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " % "
               << text << std::flush;
   }
@@ -73,7 +73,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t WIDTH = 40;
+  static constexpr size_t WIDTH = 40;
   static constexpr const char* WIPE = "\r\033[K";
   long total_;
   long last_ = -1;

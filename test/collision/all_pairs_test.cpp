@@ -226,7 +226,7 @@ TEST_P(AllPairsTest, RepeatedCallsGiveTheSameBits)
     contactsOf(a_, b_, randomPose(random_, 0.4), 0.05);
     const auto second = contactsOf(a_, b_, relative, 0.05);
     ASSERT_EQ(first.size(), second.size());
-    for (std::size_t i = 0; i < first.size(); ++i)
+    for (size_t i = 0; i < first.size(); ++i)
     {
       EXPECT_EQ(first[i].gap, second[i].gap);
       EXPECT_EQ(first[i].position, second[i].position);
@@ -242,8 +242,8 @@ TEST_P(AllPairsTest, FeaturesOfAPairAreUniqueAndAtMostEightPoints)
   for (int k = 0; k < 400; ++k)
   {
     const auto points = contactsOf(a_, b_, randomPose(random_, 0.4), 0.3);
-    ASSERT_LE(points.size(), static_cast<std::size_t>(MAX_PAIR_POINTS));
-    for (std::size_t i = 1; i < points.size(); ++i)
+    ASSERT_LE(points.size(), static_cast<size_t>(MAX_PAIR_POINTS));
+    for (size_t i = 1; i < points.size(); ++i)
     {
       const auto key = [](const PairContact& point) { return std::make_pair(point.feature_a, point.feature_b); };
       EXPECT_LT(key(points[i - 1]), key(points[i])) << k;

@@ -6,10 +6,10 @@
 // In a file of its own: where both are inlined, the compiler warns of malloc's memory given to delete.
 namespace
 {
-std::size_t count = 0;
+size_t count = 0;
 }
 
-void* operator new(std::size_t size)
+void* operator new(size_t size)
 {
   ++count;
   void* memory = std::malloc(size);
@@ -25,14 +25,14 @@ void operator delete(void* memory) noexcept
   std::free(memory);
 }
 
-void operator delete(void* memory, std::size_t) noexcept
+void operator delete(void* memory, size_t) noexcept
 {
   std::free(memory);
 }
 
 namespace frictional_contact_sim
 {
-std::size_t allocationCount()
+size_t allocationCount()
 {
   return count;
 }

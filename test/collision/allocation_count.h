@@ -7,5 +7,5 @@
 
 namespace frictional_contact_sim
 {
-std::size_t allocationCount();
+size_t allocationCount();
 }  // namespace frictional_contact_sim

@@ -74,7 +74,7 @@ inline MultibodyModel freeBody(const std::vector<Geometry>& shapes, const std::s
 {
   MultibodyModel model;
   model.name = link;
-  model.bodies.push_back({link, {}});
+  model.links.push_back({link, {}});
   Joint joint;
   joint.type = JointType::FLOATING;
   model.joints.push_back(joint);
@@ -92,8 +92,8 @@ inline MultibodyModel freeBody(const std::vector<Geometry>& shapes, const std::s
 /// Adds a link on a revolute joint (axis z through `origin`) with one shape at its origin.
 inline void addLink(MultibodyModel& model, const std::string& name, int parent, const Geometry& geometry)
 {
-  const int body = static_cast<int>(model.bodies.size());
-  model.bodies.push_back({name, {}});
+  const int body = static_cast<int>(model.links.size());
+  model.links.push_back({name, {}});
   Joint joint;
   joint.name = name + "_joint";
   joint.type = JointType::REVOLUTE;
@@ -103,7 +103,7 @@ inline void addLink(MultibodyModel& model, const std::string& name, int parent, 
   CollisionShape shape;
   shape.name = name + "_collision";
   shape.frame = static_cast<int>(model.frames.size()) - 1;
-  shape.body = body;
+  shape.link = body;
   shape.geometry = geometry;
   model.shapes.push_back(shape);
 }

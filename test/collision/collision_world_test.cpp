@@ -19,8 +19,8 @@ void addStack(CollisionWorld& world, const Eigen::Isometry3d& frame)
   world.addStatic(HalfSpace(), frame, "ground");
   for (int k = 0; k < 10; ++k)
   {
-    const int robot = world.addRobot(freeBody({CUBE}));
-    world.setBodyPose(robot, 0, frame * at(0, 0, 0.1 + 0.2 * k));
+    const int robot = world.addBody(freeBody({CUBE}));
+    world.setLinkPose(robot, 0, frame * at(0, 0, 0.1 + 0.2 * k));
   }
 }
 
@@ -35,7 +35,7 @@ TEST(BoxStackTest, EachLevelHasFourPointsWithIdsThatPersist)
     for (int k = 0; k < 10; ++k)
     {
       const Eigen::Vector3d jitter = (step == 0 ? 0.0 : 1e-15) * randomVector(random);
-      world.setBodyPose(k, 0, at(jitter.x(), jitter.y(), 0.1 + 0.2 * k + jitter.z()));
+      world.setLinkPose(k, 0, at(jitter.x(), jitter.y(), 0.1 + 0.2 * k + jitter.z()));
     }
     const std::vector<ContactPoint>& contacts = world.detect(1e-3);
     ASSERT_EQ(contacts.size(), 40u);
@@ -59,7 +59,7 @@ TEST(BoxStackTest, ContactsKeepAllDigitsAKilometreAway)
   for (const ContactPoint& contact : contacts)
   {
     EXPECT_NEAR(contact.gap, 0.0, 1e-12);  // round-off of the poses themselves: 1e3 times 2e-16, a few times
-    const bool is_ground = world.shape(contact.shape_b).robot < 0;
+    const bool is_ground = world.shape(contact.shape_b).body < 0;
     EXPECT_NEAR((contact.normal - (is_ground ? 1.0 : -1.0) * frame.linear().col(2)).norm(), 0.0, 1e-14);
   }
 }
@@ -69,7 +69,7 @@ TEST(CollisionWorldTest, ContactsAreOrderedAndTheGroundIsB)
   CollisionWorld world;
   addStack(world, Eigen::Isometry3d::Identity());
   const auto contacts = world.detect(1e-3);
-  for (std::size_t i = 1; i < contacts.size(); ++i)
+  for (size_t i = 1; i < contacts.size(); ++i)
   {
     EXPECT_LT(contacts[i - 1].id, contacts[i].id);
   }
@@ -78,7 +78,7 @@ TEST(CollisionWorldTest, ContactsAreOrderedAndTheGroundIsB)
     if (contact.shape_b == 0)
     {
       EXPECT_EQ(contact.normal, Eigen::Vector3d::UnitZ());
-      EXPECT_EQ(world.shape(contact.shape_b).link, "ground");
+      EXPECT_EQ(world.shape(contact.shape_b).link_name, "ground");
     }
     else
     {
@@ -96,23 +96,23 @@ TEST(CollisionWorldTest, TheSameInputGivesTheSameBitsWhateverWasBefore)
   for (CollisionWorld* each : {&world, &fresh})
   {
     each->addStatic(HalfSpace(), Eigen::Isometry3d::Identity(), "ground");
-    each->addRobot(freeBody({CUBE, Capsule{0.05, 0.2}}));
-    each->addRobot(freeBody({Cylinder{0.1, 0.1}, Sphere{0.12}}));
+    each->addBody(freeBody({CUBE, Capsule{0.05, 0.2}}));
+    each->addBody(freeBody({Cylinder{0.1, 0.1}, Sphere{0.12}}));
   }
   for (int k = 0; k < 100; ++k)
   {
     const Eigen::Isometry3d pose_0 = randomPose(random, 0.2);
     const Eigen::Isometry3d pose_1 = randomPose(random, 0.2);
-    world.setBodyPose(0, 0, pose_0);
-    world.setBodyPose(1, 0, pose_1);
+    world.setLinkPose(0, 0, pose_0);
+    world.setLinkPose(1, 0, pose_1);
     const auto expected = world.detect(0.01);
-    world.setBodyPose(0, 0, randomPose(random, 0.2));
+    world.setLinkPose(0, 0, randomPose(random, 0.2));
     world.detect(0.01);
-    fresh.setBodyPose(0, 0, pose_0);
-    fresh.setBodyPose(1, 0, pose_1);
+    fresh.setLinkPose(0, 0, pose_0);
+    fresh.setLinkPose(1, 0, pose_1);
     const auto& again = fresh.detect(0.01);
     ASSERT_EQ(expected.size(), again.size());
-    for (std::size_t i = 0; i < again.size(); ++i)
+    for (size_t i = 0; i < again.size(); ++i)
     {
       EXPECT_EQ(expected[i].id, again[i].id);
       EXPECT_EQ(expected[i].gap, again[i].gap);
@@ -134,15 +134,15 @@ MultibodyModel chain()
 TEST(SelfCollisionTest, NeighboursNeverCollideOthersDo)
 {
   CollisionWorld world;
-  const int robot = world.addRobot(chain());
+  const int robot = world.addBody(chain());
   const MultibodyModel model = chain();
   MultibodyData data(model);
-  data.body_pose = {at(0, 0, 0), at(0.15, 0, 0), at(0.19, 0, 0)};  // all overlap
+  data.link_pose = {at(0, 0, 0), at(0.15, 0, 0), at(0.19, 0, 0)};  // all overlap
   world.setPoses(robot, data);
   for (const ContactPoint& contact : world.detect(1e-3))
   {
-    EXPECT_EQ(world.shape(contact.shape_a).link, "base");
-    EXPECT_EQ(world.shape(contact.shape_b).link, "lower");
+    EXPECT_EQ(world.shape(contact.shape_a).link_name, "base");
+    EXPECT_EQ(world.shape(contact.shape_b).link_name, "lower");
     EXPECT_NEAR(contact.gap, -0.01, 1e-15);
   }
   EXPECT_EQ(world.detect(1e-3).size(), 4u);
@@ -151,16 +151,16 @@ TEST(SelfCollisionTest, NeighboursNeverCollideOthersDo)
 TEST(SelfCollisionTest, OverlapsOfTheInitialPoseAreDisabledAndNamed)
 {
   CollisionWorld world;
-  const int robot = world.addRobot(chain());
-  world.addRobot(freeBody({CUBE}, "crate"));
-  world.setBodyPose(robot, 0, at(0, 0, 0));
-  world.setBodyPose(robot, 1, at(0.5, 0, 0));
-  world.setBodyPose(robot, 2, at(0.19, 0, 0));
-  world.setBodyPose(1, 0, at(0, 0, 0.15));  // another robot: its overlap stays
+  const int robot = world.addBody(chain());
+  world.addBody(freeBody({CUBE}, "crate"));
+  world.setLinkPose(robot, 0, at(0, 0, 0));
+  world.setLinkPose(robot, 1, at(0.5, 0, 0));
+  world.setLinkPose(robot, 2, at(0.19, 0, 0));
+  world.setLinkPose(1, 0, at(0, 0, 0.15));  // another robot: its overlap stays
   EXPECT_THAT(world.disableOverlaps(), testing::ElementsAre("base - lower"));
   for (const ContactPoint& contact : world.detect(1e-3))
   {
-    EXPECT_EQ(world.shape(contact.shape_b).link, "crate");
+    EXPECT_EQ(world.shape(contact.shape_b).link_name, "crate");
   }
   EXPECT_FALSE(world.detect(1e-3).empty());
   EXPECT_TRUE(world.disableOverlaps().empty());
@@ -169,9 +169,9 @@ TEST(SelfCollisionTest, OverlapsOfTheInitialPoseAreDisabledAndNamed)
 TEST(SelfCollisionTest, LinksThatOnlyTouchAreNotDisabled)
 {
   CollisionWorld world;
-  world.addRobot(chain());
-  world.setBodyPose(0, 1, at(0.5, 0, 0));
-  world.setBodyPose(0, 2, at(0.2, 0, 0));
+  world.addBody(chain());
+  world.setLinkPose(0, 1, at(0.5, 0, 0));
+  world.setLinkPose(0, 2, at(0.2, 0, 0));
   EXPECT_TRUE(world.disableOverlaps().empty());
   EXPECT_EQ(world.detect(1e-3).size(), 4u);
 }
@@ -179,8 +179,8 @@ TEST(SelfCollisionTest, LinksThatOnlyTouchAreNotDisabled)
 TEST(SelfCollisionTest, DisabledPairsDoNotCollide)
 {
   CollisionWorld world;
-  world.addRobot(chain());
-  world.setBodyPose(0, 2, at(0.19, 0, 0));
+  world.addBody(chain());
+  world.setLinkPose(0, 2, at(0.19, 0, 0));
   world.disablePair(0, "lower", "base");
   EXPECT_TRUE(world.detect(1e-3).empty());
   EXPECT_THROW(world.disablePair(0, "base", "nose"), std::invalid_argument);
@@ -193,20 +193,20 @@ TEST(FixedBaseTest, DoesNotCollideWithStaticShapesNorOtherFixedBases)
   fixed.joints[0].type = JointType::FIXED;
   CollisionWorld world;
   world.addStatic(HalfSpace(), Eigen::Isometry3d::Identity(), "ground");
-  world.addRobot(fixed);
-  world.addRobot(fixed);
+  world.addBody(fixed);
+  world.addBody(fixed);
   EXPECT_TRUE(world.detect(1e-3).empty());
-  world.addRobot(freeBody({CUBE}));
-  world.setBodyPose(2, 0, at(0.15, 0, 0));
+  world.addBody(freeBody({CUBE}));
+  world.setLinkPose(2, 0, at(0.15, 0, 0));
   EXPECT_FALSE(world.detect(1e-3).empty());
 }
 
 TEST(LowestPointTest, IsTheSupportOfAllShapes)
 {
   CollisionWorld world;
-  world.addRobot(freeBody({CUBE, Sphere{0.05}}));
-  world.addRobot(freeBody({}));
-  world.setBodyPose(0, 0, pose(Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()).toRotationMatrix(), {0, 0, 1}));
+  world.addBody(freeBody({CUBE, Sphere{0.05}}));
+  world.addBody(freeBody({}));
+  world.setLinkPose(0, 0, pose(Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()).toRotationMatrix(), {0, 0, 1}));
   EXPECT_NEAR(world.lowestPoint(0), 1.0 - 0.1 * std::sqrt(2.0), 1e-15);
   EXPECT_EQ(world.lowestPoint(1), std::numeric_limits<double>::infinity());
 }
@@ -217,8 +217,8 @@ std::vector<ContactPoint> heap(CollisionWorld& world, int count)
   std::mt19937 random(9);
   for (int k = 0; k < count; ++k)
   {
-    world.addRobot(freeBody({Sphere{0.1}}));
-    world.setBodyPose(k, 0, randomPose(random, 0.5));
+    world.addBody(freeBody({Sphere{0.1}}));
+    world.setLinkPose(k, 0, randomPose(random, 0.5));
   }
   return world.detect(0.01);
 }
@@ -258,19 +258,19 @@ TEST(CollisionWorldTest, DetectDoesNotAllocateAfterWarmUp)
 {
   CollisionWorld world;
   addStack(world, Eigen::Isometry3d::Identity());
-  world.addRobot(freeBody({Cylinder{0.1, 0.1}, Capsule{0.05, 0.2}, Sphere{0.1}}));
+  world.addBody(freeBody({Cylinder{0.1, 0.1}, Capsule{0.05, 0.2}, Sphere{0.1}}));
   std::mt19937 random(4);
-  world.setBodyPose(10, 0, randomPose(random, 0.2));
+  world.setLinkPose(10, 0, randomPose(random, 0.2));
   world.detect(0.01);
-  std::size_t contacts = 0;
-  std::size_t most = 0;
+  size_t contacts = 0;
+  size_t most = 0;
   for (int pass = 0; pass < 2; ++pass)
   {
     std::mt19937 same(4);
-    const std::size_t before = allocationCount();
+    const size_t before = allocationCount();
     for (int k = 0; k < 200; ++k)
     {
-      world.setBodyPose(10, 0, randomPose(same, 0.2));
+      world.setLinkPose(10, 0, randomPose(same, 0.2));
       contacts += world.detect(0.01).size();
     }
     most = allocationCount() - before;  // of the second pass in the end

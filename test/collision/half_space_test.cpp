@@ -11,9 +11,9 @@ namespace
 {
 constexpr double ROUND_OFF = 1e-14;
 
-std::vector<PairContact> onGround(const Geometry& geometry, const Eigen::Isometry3d& body_pose, double margin)
+std::vector<PairContact> onGround(const Geometry& geometry, const Eigen::Isometry3d& link_pose, double margin)
 {
-  return contactsOf(makeShape(geometry), makeShape(HalfSpace()), body_pose, margin);
+  return contactsOf(makeShape(geometry), makeShape(HalfSpace()), link_pose, margin);
 }
 
 TEST(SphereOnGroundTest, GapIsHeightMinusRadius)
@@ -52,10 +52,10 @@ TEST(BoxOnGroundTest, SmallestGapIsTheSupportFunction)
   for (int k = 0; k < 200; ++k)
   {
     const Eigen::Vector3d half(0.3, 0.2, 0.1);
-    const Eigen::Isometry3d body_pose = randomPose(random, 0.4);
-    const Eigen::Vector3d up = body_pose.linear().row(2).transpose();
-    const double lowest = body_pose.translation().z() - up.cwiseAbs().dot(half);
-    const auto points = onGround(Box{half}, body_pose, 0.01);
+    const Eigen::Isometry3d link_pose = randomPose(random, 0.4);
+    const Eigen::Vector3d up = link_pose.linear().row(2).transpose();
+    const double lowest = link_pose.translation().z() - up.cwiseAbs().dot(half);
+    const auto points = onGround(Box{half}, link_pose, 0.01);
     ASSERT_EQ(points.empty(), lowest > 0.01);
     if (!points.empty())
     {
@@ -162,7 +162,7 @@ TEST(HalfSpaceTest, GapsDoNotDependOnThePlaneNorOnTheOrder)
       const auto points = contactsOf(shape, plane, relative, 0.05);
       const auto swapped = contactsOf(plane, shape, relative.inverse(Eigen::Isometry), 0.05);
       ASSERT_EQ(points.size(), swapped.size());
-      for (std::size_t i = 0; i < points.size(); ++i)
+      for (size_t i = 0; i < points.size(); ++i)
       {
         EXPECT_NEAR(points[i].gap, swapped[i].gap, ROUND_OFF);
         EXPECT_NEAR((points[i].normal + relative.linear() * swapped[i].normal).norm(), 0.0, ROUND_OFF);

@@ -158,7 +158,7 @@ TEST(BoxOnBoxTest, PointsComeInTheOrderOfTheirFeatures)
   // A corner of a on the face of b, two crossings of edges, a corner of b in the face of a.
   EXPECT_EQ(points.front().feature_a >> 14, static_cast<int>(FeatureKind::VERTEX));
   EXPECT_EQ(points.back().feature_a >> 14, static_cast<int>(FeatureKind::FACE));
-  for (std::size_t i = 1; i < points.size(); ++i)
+  for (size_t i = 1; i < points.size(); ++i)
   {
     EXPECT_LT(std::make_pair(points[i - 1].feature_a, points[i - 1].feature_b),
               std::make_pair(points[i].feature_a, points[i].feature_b));

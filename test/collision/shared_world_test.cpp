@@ -17,7 +17,7 @@ CollisionWorld loadHeap(int count)
   world.addStatic(HalfSpace(), Eigen::Isometry3d::Identity(), "ground");
   for (int k = 0; k < count; ++k)
   {
-    world.addRobot(freeBody({shapes[k % 4], shapes[(k + 1) % 4]}));
+    world.addBody(freeBody({shapes[k % 4], shapes[(k + 1) % 4]}));
   }
   return world;
 }
@@ -31,7 +31,7 @@ std::vector<ContactPoint> dropHeaps(CollisionWorld& world, int count, int seed)
   {
     for (int k = 0; k < count; ++k)
     {
-      world.setBodyPose(k, 0, randomPose(random, 0.1 * std::cbrt(count)));
+      world.setLinkPose(k, 0, randomPose(random, 0.1 * std::cbrt(count)));
     }
     const std::vector<ContactPoint>& contacts = world.detect(0.01);
     all.insert(all.end(), contacts.begin(), contacts.end());
@@ -42,7 +42,7 @@ std::vector<ContactPoint> dropHeaps(CollisionWorld& world, int count, int seed)
 void expectSame(const std::vector<ContactPoint>& expected, const std::vector<ContactPoint>& found)
 {
   ASSERT_EQ(expected.size(), found.size());
-  for (std::size_t i = 0; i < found.size(); ++i)
+  for (size_t i = 0; i < found.size(); ++i)
   {
     ASSERT_EQ(expected[i].id, found[i].id);
     ASSERT_EQ(expected[i].gap, found[i].gap);
@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(ListAndTree, SharedWorldTest, testing::Values(20, 200))
 TEST(SharedWorldTest, CopiesShareTheirShapesButNotTheirPoses)
 {
   CollisionWorld world = loadHeap(2);
-  world.setBodyPose(0, 0, at(0, 0, 5));
-  world.setBodyPose(1, 0, at(0, 0, 9));
+  world.setLinkPose(0, 0, at(0, 0, 5));
+  world.setLinkPose(1, 0, at(0, 0, 9));
   CollisionWorld copy = world;
   for (int handle = 0; handle < world.shapeCount(); ++handle)
   {
@@ -93,7 +93,7 @@ TEST(SharedWorldTest, CopiesShareTheirShapesButNotTheirPoses)
     EXPECT_EQ(&world.shape(handle), &copy.shape(handle));
   }
   EXPECT_EQ(world.lowestPoint(1), copy.lowestPoint(1));
-  copy.setBodyPose(1, 0, at(0, 0, 5));
+  copy.setLinkPose(1, 0, at(0, 0, 5));
   EXPECT_FALSE(copy.detect(0.0).empty());
   EXPECT_TRUE(world.detect(0.0).empty());
 }
@@ -101,9 +101,9 @@ TEST(SharedWorldTest, CopiesShareTheirShapesButNotTheirPoses)
 TEST(SharedWorldTest, LoadingMoreIntoACopyLeavesTheOriginal)
 {
   CollisionWorld world;
-  world.addRobot(freeBody({Sphere{0.1}}, "left"));
-  world.addRobot(freeBody({Sphere{0.1}}, "right"));
-  world.setBodyPose(1, 0, at(0.15, 0, 0));
+  world.addBody(freeBody({Sphere{0.1}}, "left"));
+  world.addBody(freeBody({Sphere{0.1}}, "right"));
+  world.setLinkPose(1, 0, at(0.15, 0, 0));
   CollisionWorld copy = world;
   copy.addStatic(HalfSpace(), Eigen::Isometry3d::Identity(), "ground");
   EXPECT_EQ(world.shapeCount(), 2);

@@ -67,7 +67,7 @@ TEST_F(ContactRowsTest, NormalRowIsTheRateOfTheGapAndTangentsThatOfTheMaterialPo
     const double step = 1e-5;
     double gap[2];
     Eigen::Vector3d moved[2];
-    const Eigen::Vector3d local = body.middle.body_pose[0].inverse() * point.position;
+    const Eigen::Vector3d local = body.middle.link_pose[0].inverse() * point.position;
     for (const int side : {0, 1})
     {
       MultibodyData data(body.model.tree);
@@ -76,7 +76,7 @@ TEST_F(ContactRowsTest, NormalRowIsTheRateOfTheGapAndTangentsThatOfTheMaterialPo
       forwardKinematics(body.model.tree, q, data);
       bench_.world().setPoses(0, data);
       gap[side] = bench_.world().detect(0.1).front().gap;
-      moved[side] = data.body_pose[0] * local;
+      moved[side] = data.link_pose[0] * local;
     }
     EXPECT_NEAR(rate[0], (gap[1] - gap[0]) / (2.0 * step), 1e-8);
     const Eigen::Vector3d velocity = (moved[1] - moved[0]) / (2.0 * step);

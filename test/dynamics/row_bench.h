@@ -21,7 +21,7 @@ public:
     model_.name = "body";
     bodies_.reserve(1);
     bodies_.emplace_back(model_, start_);
-    world_.addRobot(model_.tree);
+    world_.addBody(model_.tree);
     rows_.memory.resize(1);
     std::vector<std::unique_ptr<RowSource>> sources;
     sources.push_back(make(bodies_, world_, rows_));

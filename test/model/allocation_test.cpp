@@ -13,9 +13,9 @@ namespace
 std::atomic<long> allocations{0};
 }
 
-extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_malloc(size_t size);
 
-extern "C" void* malloc(std::size_t size)
+extern "C" void* malloc(size_t size)
 {
   ++allocations;
   return __libc_malloc(size);

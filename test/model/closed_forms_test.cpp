@@ -68,7 +68,7 @@ TEST(ThesisDoublePendulumTest, MassGyroscopicAndExternalTermsAreThoseOfAppendixA
     // Round-off of a dozen operations on numbers of order 10.
     EXPECT_LT((data.mass_matrix - turn.transpose() * mass * turn).norm(), 1e-14);
     EXPECT_LT((bias - turn.transpose() * (inertial - external)).norm(), 1e-14 * 10);
-    const Eigen::Vector3d tip = data.body_pose[2] * Eigen::Vector3d(0, 0, -l2);
+    const Eigen::Vector3d tip = data.link_pose[2] * Eigen::Vector3d(0, 0, -l2);
     const Eigen::Vector3d expected(l1 * std::sin(theta[0]) + l2 * std::sin(theta[1]), 0.0,
                                    -l1 * std::cos(theta[0]) - l2 * std::cos(theta[1]));
     EXPECT_LT((tip - expected).norm(), 1e-15);
@@ -132,7 +132,7 @@ TEST(FreeRigidBodyTest, TorqueFreeSpinKeepsEnergyAndAngularMomentumToSecondOrder
     const auto momentum = [&]()
     {
       forwardKinematics(model, q, data);
-      return Eigen::Vector3d(data.body_inertia[0].rotational * v.tail<3>());
+      return Eigen::Vector3d(data.link_inertia[0].rotational * v.tail<3>());
     };
     const Eigen::Vector3d start = momentum();
     for (int k = 0; k < std::lround(2.0 / dt); ++k)
@@ -159,14 +159,14 @@ TEST(LumpedFixedJointsTest, InertiaIsTheParallelAxisSum)
       loadUrdf(robot(link("a", inertial(2.0, "0.1 0.2 0.25", {0.05, 0, 0})) +
                      link("b", inertial(3.0, "0.3 0.5 0.6", {0, 0.1, 0})) + joint("w", "fixed", "a", "b", weld)),
                "bars", BaseType::FLOATING);
-  ASSERT_EQ(lumped.model.bodies.size(), 1u);
+  ASSERT_EQ(lumped.model.links.size(), 1u);
   ASSERT_EQ(lumped.model.frames.size(), 2u);
   const Eigen::Vector3d first(0.05, 0, 0);
   const Eigen::Vector3d second(0.4 - 0.1, 0.1, -0.2);  // b's y is a's -x
   const Eigen::Vector3d center = (2.0 * first + 3.0 * second) / 5.0;
   Eigen::Matrix3d moments = Eigen::Vector3d(0.1 + 0.5, 0.2 + 0.3, 0.25 + 0.6).asDiagonal();
   moments -= 2.0 * skew(first - center) * skew(first - center) + 3.0 * skew(second - center) * skew(second - center);
-  const RigidInertia& inertia = lumped.model.bodies[0].inertia;
+  const RigidInertia& inertia = lumped.model.links[0].inertia;
   EXPECT_EQ(inertia.mass, 5.0);
   EXPECT_LT((inertia.center - center).norm(), 1e-15);
   EXPECT_LT((inertia.rotational - moments).norm(), 1e-15);
@@ -186,11 +186,11 @@ TEST(LumpedFixedJointsTest, JointsAndShapesBehindAWeldMoveAsIfNotLumped)
             joint("mount", "fixed", "arm", "tool", R"(<origin xyz="0 0 3"/>)")),
       "arm", BaseType::FIXED);
   const MultibodyModel& model = loaded.model;
-  ASSERT_EQ(model.bodies.size(), 2u);
+  ASSERT_EQ(model.links.size(), 2u);
   ASSERT_EQ(model.shapes.size(), 1u);
   EXPECT_EQ(model.shapes[0].name, "tool_collision_0");
   EXPECT_EQ(model.frames[model.shapes[0].frame].name, "tool");
-  EXPECT_EQ(model.shapes[0].body, 1);
+  EXPECT_EQ(model.shapes[0].link, 1);
   MultibodyData data(model);
   const double angle = 0.4;
   forwardKinematics(model, Eigen::VectorXd::Constant(1, angle), data);
@@ -199,7 +199,7 @@ TEST(LumpedFixedJointsTest, JointsAndShapesBehindAWeldMoveAsIfNotLumped)
                                Eigen::Translation3d(0, 0, 3);
   const Eigen::Isometry3d tool = framePose(model, data, model.findFrame("tool"));
   EXPECT_LT((tool.matrix() - expected.matrix()).norm(), 1e-14);
-  const Eigen::Isometry3d shape = data.body_pose[1] * model.shapes[0].placement;
+  const Eigen::Isometry3d shape = data.link_pose[1] * model.shapes[0].placement;
   EXPECT_LT((shape.translation() - expected * Eigen::Vector3d(0, 0, 0.1)).norm(), 1e-14);
 }
 

@@ -15,7 +15,7 @@ const Eigen::Vector3d GRAVITY(0.3, -0.2, -9.81);
 
 Eigen::Vector3d centerOf(const MultibodyModel& model, const MultibodyData& data, int body)
 {
-  return data.body_pose[body] * model.bodies[body].inertia.center;
+  return data.link_pose[body] * model.links[body].inertia.center;
 }
 
 /** Momentum (linear; angular about the centre of mass) of a body from its Jacobian at the centre. */
@@ -24,9 +24,9 @@ Vector6d bodyMomentum(const MultibodyModel& model, const MultibodyData& data, in
 {
   pointJacobian(model, data, body, centerOf(model, data, body), jacobian);
   Vector6d momentum = jacobian * v;
-  const Eigen::Matrix3d axes = data.body_pose[body].linear();
-  momentum.head<3>() *= model.bodies[body].inertia.mass;
-  momentum.tail<3>() = axes * model.bodies[body].inertia.rotational * axes.transpose() * momentum.tail<3>();
+  const Eigen::Matrix3d axes = data.link_pose[body].linear();
+  momentum.head<3>() *= model.links[body].inertia.mass;
+  momentum.tail<3>() = axes * model.links[body].inertia.rotational * axes.transpose() * momentum.tail<3>();
   return momentum;
 }
 
@@ -114,9 +114,9 @@ TEST_P(RandomTreeDynamicsTest, MassMatrixIsTheSumOverBodiesAndPositiveDefinite)
   Matrix6Xd jacobian(6, model_.nv);
   for (int body = 0; body < GetParam().bodies; ++body)
   {
-    const RigidInertia& inertia = model_.bodies[body].inertia;
+    const RigidInertia& inertia = model_.links[body].inertia;
     pointJacobian(model_, data_, body, centerOf(model_, data_, body), jacobian);
-    const Eigen::Matrix3d axes = data_.body_pose[body].linear();
+    const Eigen::Matrix3d axes = data_.link_pose[body].linear();
     expected += inertia.mass * jacobian.topRows<3>().transpose() * jacobian.topRows<3>();
     expected +=
         jacobian.bottomRows<3>().transpose() * axes * inertia.rotational * axes.transpose() * jacobian.bottomRows<3>();

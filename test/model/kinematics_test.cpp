@@ -47,7 +47,7 @@ TEST_P(RandomTreeKinematicsTest, JacobianIsTheDerivativeOfThePositionOfABodyFixe
     const Eigen::Vector3d local = random_.vector();
     MultibodyData data(model_);
     forwardKinematics(model_, q, data);
-    const Eigen::Vector3d point = data.body_pose[body] * local;
+    const Eigen::Vector3d point = data.link_pose[body] * local;
     Matrix6Xd jacobian(6, model_.nv);
     pointJacobian(model_, data, body, point, jacobian);
     for (int k = 0; k < model_.nv; ++k)
@@ -60,9 +60,9 @@ TEST_P(RandomTreeKinematicsTest, JacobianIsTheDerivativeOfThePositionOfABodyFixe
       forwardKinematics(model_, moved, after);
       integrate(model_, q, unit, -h, moved);
       forwardKinematics(model_, moved, before);
-      const Eigen::Vector3d linear = (after.body_pose[body] * local - before.body_pose[body] * local) / (2.0 * h);
+      const Eigen::Vector3d linear = (after.link_pose[body] * local - before.link_pose[body] * local) / (2.0 * h);
       const Eigen::Vector3d angular =
-          smallRotation(before.body_pose[body].linear(), after.body_pose[body].linear()) / (2.0 * h);
+          smallRotation(before.link_pose[body].linear(), after.link_pose[body].linear()) / (2.0 * h);
       EXPECT_LT((jacobian.col(k).head<3>() - linear).norm(), tolerance) << "coordinate " << k;
       EXPECT_LT((jacobian.col(k).tail<3>() - angular).norm(), tolerance) << "coordinate " << k;
     }
@@ -79,7 +79,7 @@ TEST_P(RandomTreeKinematicsTest, VelocityRowsAndJacobianAgree)
   Matrix6Xd jacobian(6, model_.nv);
   for (int body = 0; body < GetParam().bodies; ++body)
   {
-    const Eigen::Vector3d point = data.body_pose[body] * random_.vector();
+    const Eigen::Vector3d point = data.link_pose[body] * random_.vector();
     const Eigen::Vector3d direction = random_.vector();
     pointJacobian(model_, data, body, point, jacobian);
     // Round-off of sums of about 50 terms of size up to 100.
@@ -114,7 +114,7 @@ TEST_P(RandomTreeKinematicsTest, RotationsStayRotationsAndQuaternionsUnit)
       EXPECT_NEAR(q.segment<4>(joint.q_index + 3).norm(), 1.0, 4e-16);
     }
   }
-  for (const Eigen::Isometry3d& pose : data.body_pose)
+  for (const Eigen::Isometry3d& pose : data.link_pose)
   {
     // A product of two rotations per body: round-off grows by some 1e-15 a level.
     EXPECT_LT((pose.linear().transpose() * pose.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-13);
@@ -162,7 +162,7 @@ TEST(ReferenceTest, IsTheRootOriginForEitherBase)
   MultibodyModel fixed = random.model(3, JointType::FIXED, 0.0);
   MultibodyData fixed_data(fixed);
   forwardKinematics(fixed, random.position(fixed), fixed_data);
-  EXPECT_TRUE(fixed_data.body_pose[0].isApprox(fixed.joints[0].placement, 1e-15));
+  EXPECT_TRUE(fixed_data.link_pose[0].isApprox(fixed.joints[0].placement, 1e-15));
   EXPECT_EQ(fixed_data.reference, fixed.joints[0].placement.translation());
 
   const MultibodyModel floating = random.model(3, JointType::FLOATING, 0.0);
@@ -170,7 +170,7 @@ TEST(ReferenceTest, IsTheRootOriginForEitherBase)
   MultibodyData data(floating);
   forwardKinematics(floating, q, data);
   EXPECT_EQ(data.reference, Eigen::Vector3d(q.head<3>()));
-  EXPECT_EQ(data.body_pose[0].translation(), data.reference);
+  EXPECT_EQ(data.link_pose[0].translation(), data.reference);
 }
 
 TEST(PlanarAxesTest, AreATriadWithTheNormalAndXYForZ)
@@ -204,10 +204,10 @@ TEST(FrameTest, PoseAndCentreOfMassFollowTheBodies)
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int i = 0; i < 6; ++i)
   {
-    const Eigen::Isometry3d expected = data.body_pose[i] * model.frames[i].placement;
+    const Eigen::Isometry3d expected = data.link_pose[i] * model.frames[i].placement;
     EXPECT_TRUE(framePose(model, data, i).isApprox(expected, 1e-15));
-    mass += model.bodies[i].inertia.mass;
-    moment += model.bodies[i].inertia.mass * (data.body_pose[i] * model.bodies[i].inertia.center);
+    mass += model.links[i].inertia.mass;
+    moment += model.links[i].inertia.mass * (data.link_pose[i] * model.links[i].inertia.center);
   }
   EXPECT_NEAR(model.totalMass(), mass, 1e-12 * mass);
   EXPECT_LT((centerOfMass(model, data) - moment / mass).norm(), 1e-13);
@@ -225,7 +225,7 @@ TEST(FinalizeTest, RefusesInconsistentTreesInOneLine)
   model.joints[1].axis = Eigen::Vector3d::UnitY();
   model.joints.pop_back();
   EXPECT_THROW(finalize(model), std::invalid_argument);
-  model.bodies.pop_back();
+  model.links.pop_back();
   EXPECT_NO_THROW(finalize(model));
 }
 

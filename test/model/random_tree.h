@@ -34,7 +34,7 @@ public:
       }
       joint.axis = vector().normalized();
       tree.joints.push_back(joint);
-      tree.bodies.push_back({"body_" + std::to_string(i), inertia()});
+      tree.links.push_back({"body_" + std::to_string(i), inertia()});
       tree.frames.push_back({"body_" + std::to_string(i), i, pose()});
     }
     finalize(tree);

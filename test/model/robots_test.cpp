@@ -22,7 +22,7 @@ double massInText(const std::string& path)
   std::ostringstream content;
   content << file.rdbuf();
   std::string text = content.str();
-  for (std::size_t begin = text.find("<!--"); begin != std::string::npos; begin = text.find("<!--"))
+  for (size_t begin = text.find("<!--"); begin != std::string::npos; begin = text.find("<!--"))
   {
     text.erase(begin, text.find("-->", begin) + 3 - begin);
   }

@@ -107,7 +107,7 @@ TEST(MatrixFreeOperatorTest, PartsAreRowsAndColumnsOfTheWhole)
   without.compute(problem, OperatorKind::MATRIX_FREE);
   const auto half = problem.laws.size() / 2;
   std::vector<int> blocks, position(problem.laws.size(), -1);
-  for (std::size_t i = half; i < problem.laws.size(); ++i)
+  for (size_t i = half; i < problem.laws.size(); ++i)
   {
     position[i] = static_cast<int>(i - half);
     blocks.push_back(static_cast<int>(i));

@@ -165,7 +165,7 @@ TEST(ExistenceTest, EveryVerdictOnRandomProblemsSurvivesAnIndependentCheck)
         ++certified;
         const Eigen::Matrix<long double, -1, 1> u = H * report.v.cast<long double>() + problem.w.cast<long double>();
         for (int i = 0; i < contacts; ++i)
-          EXPECT_GE(u[3 * i], problem.laws[static_cast<std::size_t>(i)].coefficient * u.segment(3 * i + 1, 2).norm());
+          EXPECT_GE(u[3 * i], problem.laws[static_cast<size_t>(i)].coefficient * u.segment(3 * i + 1, 2).norm());
       }
       else if (report.criterion_violated)
       {
@@ -173,7 +173,7 @@ TEST(ExistenceTest, EveryVerdictOnRandomProblemsSurvivesAnIndependentCheck)
         const Eigen::Matrix<long double, -1, 1> r = report.multiplier.cast<long double>();
         for (int i = 0; i < contacts; ++i)
           EXPECT_LE(r.segment(3 * i + 1, 2).norm(),
-                    problem.laws[static_cast<std::size_t>(i)].coefficient * r[3 * i] + 1e-18L);
+                    problem.laws[static_cast<size_t>(i)].coefficient * r[3 * i] + 1e-18L);
         const long double power = r.dot(problem.w.cast<long double>());
         EXPECT_LT(power, 0.0L);
         EXPECT_LT((H.transpose() * r).lpNorm<1>() * 1e6L, -power);

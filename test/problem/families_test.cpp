@@ -46,7 +46,7 @@ TEST(RandomFamilyTest, TheTablesAreThoseOfTheThesis)
 {
   const std::vector<RandomFamilyEntry> small = smallRandomFamily();
   ASSERT_EQ(small.size(), 15u);
-  for (std::size_t i = 0; i < small.size(); ++i)  // table 5.1 is regular
+  for (size_t i = 0; i < small.size(); ++i)  // table 5.1 is regular
   {
     EXPECT_EQ(small[i].options.velocities, 42 + 6 * static_cast<int>(i));
     EXPECT_EQ(small[i].options.contacts, 5 + 3 * static_cast<int>(i));
@@ -56,7 +56,7 @@ TEST(RandomFamilyTest, TheTablesAreThoseOfTheThesis)
   ASSERT_EQ(large.size(), 15u);
   const std::vector<int> systems = {125, 167, 187, 200, 208, 50, 67, 75, 80, 83, 21, 28, 31, 33, 35};  // table 5.2
   std::set<std::string> names;
-  for (std::size_t i = 0; i < large.size(); ++i)
+  for (size_t i = 0; i < large.size(); ++i)
   {
     const RandomFamilyOptions& options = large[i].options;
     EXPECT_EQ(options.velocities, systems[i] * options.subsystem_velocities);
@@ -96,7 +96,7 @@ TEST(RandomFamilyTest, ContactsJoinTwoSystemsAndScalarsFollowTheirLaws)
   for (int i = 0; i < options.contacts; ++i)
   {
     EXPECT_EQ(bodiesOf(problem, i, 6).size(), 2u);
-    const double friction = problem.laws[static_cast<std::size_t>(i)].coefficient;
+    const double friction = problem.laws[static_cast<size_t>(i)].coefficient;
     EXPECT_TRUE(friction >= 0.2 && friction <= 0.8);
     sum += friction;
   }

@@ -153,7 +153,7 @@ TEST_F(FclibTest, BrokenFilesAreOneLineErrorsNotTheEndOfTheProcess)
   writeFclib(file("good.hdf5"), randomProblem({}, 2), {});
   std::ifstream input(file("good.hdf5"), std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(input)), std::istreambuf_iterator<char>());
-  for (const std::size_t keep : {std::size_t(100), bytes.size() / 4, bytes.size() / 2, bytes.size() - 10})
+  for (const size_t keep : {size_t(100), bytes.size() / 4, bytes.size() / 2, bytes.size() - 10})
   {
     std::ofstream(file("cut.hdf5"), std::ios::binary | std::ios::trunc) << bytes.substr(0, keep);
     const std::string error = errorOf(file("cut.hdf5"));

@@ -121,8 +121,8 @@ TEST(ResidualTest, DoesNotDependOnTheOrderOfContacts)
     laws.push_back({LawType::COULOMB_3D, 0.2 * (i + 1)});
   for (int i = 0; i < contacts; ++i)
   {
-    P.block<3, 3>(3 * i, 3 * order[static_cast<std::size_t>(i)]).setIdentity();
-    permuted.push_back(laws[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+    P.block<3, 3>(3 * i, 3 * order[static_cast<size_t>(i)]).setIdentity();
+    permuted.push_back(laws[static_cast<size_t>(order[static_cast<size_t>(i)])]);
   }
   const double a = evaluateResidual(localProblem(delassus, q, laws), r);
   const double b = evaluateResidual(localProblem(P * delassus * P.transpose(), P * q, permuted), P * r);

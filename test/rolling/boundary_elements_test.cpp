@@ -150,15 +150,15 @@ TEST(BoundaryElementPatchTest, UniformTensionIsRecoveredUnderRefinement)
   for (int n : {8, 16, 32, 64})
   {
     const Contour body = square(n);
-    std::vector<bool> given_u(static_cast<std::size_t>(2 * body.size()), false);
+    std::vector<bool> given_u(static_cast<size_t>(2 * body.size()), false);
     Eigen::VectorXd given = Eigen::VectorXd::Zero(2 * body.size());
     for (Eigen::Index i = 0; i < body.size(); ++i)
     {
       const Eigen::Index side = i / n;
       if (side == 1)
         given[2 * i] = 1.0;
-      given_u[static_cast<std::size_t>(2 * i)] = side == 3;
-      given_u[static_cast<std::size_t>(2 * i + 1)] = side == 0;
+      given_u[static_cast<size_t>(2 * i)] = side == 3;
+      given_u[static_cast<size_t>(2 * i + 1)] = side == 0;
     }
     const BoundarySolution solution = solveBoundaryProblem(assembleBoundaryMatrices(body, STEEL_LIKE), given_u, given);
     double error = 0.0;
@@ -188,7 +188,7 @@ TEST(BoundaryElementPatchTest, PressurisedRingIsLames)
   for (int n : {24, 48, 96})
   {
     const Contour body = join(circle(b, 2 * n, false), circle(a, n, true));
-    std::vector<bool> given_u(static_cast<std::size_t>(2 * body.size()), false);
+    std::vector<bool> given_u(static_cast<size_t>(2 * body.size()), false);
     std::fill_n(given_u.begin(), 4 * n, true);
     Eigen::VectorXd given = Eigen::VectorXd::Zero(2 * body.size());
     for (Eigen::Index i = 2 * n; i < body.size(); ++i)
@@ -226,19 +226,19 @@ TEST(BoundaryElementTest, ReactionsOfTheHeldArcBalanceTheLoad)
     mesh.contact_elements = static_cast<int>(4.0 / max_angle);
     mesh.max_angle = max_angle;
     const Contour body = makeCylinderContour(mesh);
-    std::vector<bool> given_u(static_cast<std::size_t>(2 * body.size()), false);
+    std::vector<bool> given_u(static_cast<size_t>(2 * body.size()), false);
     Eigen::VectorXd given = Eigen::VectorXd::Zero(2 * body.size());
     Eigen::Vector2d load(0.0, 0.0);
     for (Eigen::Index i = 0; i < body.size(); ++i)
     {
-      const auto kind = body.kinds[static_cast<std::size_t>(i)];
+      const auto kind = body.kinds[static_cast<size_t>(i)];
       if (kind == ElementKind::CONTACT)
       {
         given.segment<2>(2 * i) << 0.3, 1.0;
         load += body.length(i) * Eigen::Vector2d(0.3, 1.0);
       }
       if (kind == ElementKind::HELD)
-        given_u[static_cast<std::size_t>(2 * i)] = given_u[static_cast<std::size_t>(2 * i + 1)] = true;
+        given_u[static_cast<size_t>(2 * i)] = given_u[static_cast<size_t>(2 * i + 1)] = true;
     }
     const BoundarySolution solution = solveBoundaryProblem(assembleBoundaryMatrices(body, STEEL_LIKE), given_u, given);
     Eigen::Vector2d sum(0.0, 0.0);
@@ -274,7 +274,7 @@ TEST(ContourTest, CylinderMeshIsClosedGradedAndRound)
   {
     const double ratio = body.length((i + 1) % body.size()) / body.length(i);
     const bool held_border =
-        body.kinds[static_cast<std::size_t>(i)] != body.kinds[static_cast<std::size_t>((i + 1) % body.size())];
+        body.kinds[static_cast<size_t>(i)] != body.kinds[static_cast<size_t>((i + 1) % body.size())];
     if (!held_border)
     {
       EXPECT_LT(std::max(ratio, 1.0 / ratio), mesh.growth + 1e-9) << i;

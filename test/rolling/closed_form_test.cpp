@@ -219,7 +219,7 @@ TEST(CarterTest, StickStripSitsAtTheLeadingEdge)
   for (Eigen::Index i = 0; i < bodies.F.size(); ++i)
   {
     const double x = bodies.F.x[i];
-    const NodeState state = result.contact.states[static_cast<std::size_t>(i)];
+    const NodeState state = result.contact.states[static_cast<size_t>(i)];
     if (x > 2.0 * bodies.cell && x < a - 2.0 * bodies.cell)
     {
       EXPECT_EQ(state, NodeState::STICK) << x / a;
@@ -317,7 +317,7 @@ TEST(SlipVelocityTest, StaticStickGivesTheCreepageNotZero)
   const EqualBodies bodies(100);
   const FrictionalContact c = bodies.press(0.5).contact;
   const Eigen::VectorXd s = slipVelocity(bodies.F.x, c.u_T, 0.01, 1.0);
-  for (std::size_t i = 0; i + 1 < c.states.size(); ++i)
+  for (size_t i = 0; i + 1 < c.states.size(); ++i)
     if (c.states[i] == NodeState::STICK && c.states[i + 1] == NodeState::STICK)
     {
       EXPECT_NEAR(s[static_cast<Eigen::Index>(i)], 0.01, 1e-10);

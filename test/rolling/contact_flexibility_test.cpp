@@ -80,7 +80,7 @@ TEST(CondensationTest, AgreesWithTheUncondensedProblem)
   // (20) and (22) are the same equations: round-off times the condition of H_ff.
   const Contour body = makeCylinderContour(meshOf(12, 0.2));
   const ContactFlexibility F = condense(body, RUBBER, ContactFrames::FLAT);
-  std::vector<bool> given_u(static_cast<std::size_t>(2 * body.size()), false);
+  std::vector<bool> given_u(static_cast<size_t>(2 * body.size()), false);
   Eigen::VectorXd given = Eigen::VectorXd::Zero(2 * body.size());
   Eigen::VectorXd r(24);
   for (Eigen::Index i = 0; i < 12; ++i)
@@ -90,7 +90,7 @@ TEST(CondensationTest, AgreesWithTheUncondensedProblem)
     given.segment<2>(2 * i) << r[12 + i], r[i];
   }
   for (Eigen::Index k : body.select(ElementKind::HELD))
-    given_u[static_cast<std::size_t>(2 * k)] = given_u[static_cast<std::size_t>(2 * k + 1)] = true;
+    given_u[static_cast<size_t>(2 * k)] = given_u[static_cast<size_t>(2 * k + 1)] = true;
   const BoundarySolution solution = solveBoundaryProblem(assembleBoundaryMatrices(body, RUBBER), given_u, given);
   const Eigen::VectorXd w = F.full() * r;
   for (Eigen::Index i = 0; i < 12; ++i)

@@ -105,7 +105,7 @@ TEST(FrictionalLcpTest, AnswersFulfilSignoriniAndCoulombNodeByNode)
         EXPECT_GE(c.y_N[i], -1e-12);
         EXPECT_LE(std::min(c.r_N[i] / p, c.y_N[i] / 1e-3), 1e-10);
         EXPECT_LE(std::abs(c.r_T[i]), mu * c.r_N[i] + 1e-10 * p);
-        if (c.states[static_cast<std::size_t>(i)] == NodeState::STICK)
+        if (c.states[static_cast<size_t>(i)] == NodeState::STICK)
         {
           EXPECT_NEAR(c.y_T[i], 0.0, 1e-13);
         }

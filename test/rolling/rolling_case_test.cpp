@@ -138,7 +138,7 @@ TEST(RollingCaseTest, PapersCaseShowsItsTrends)
     EXPECT_EQ(states.front(), NodeState::SEPARATION);
     EXPECT_EQ(states.back(), NodeState::SEPARATION);
     double moment = 0.0, weight = 0.0, largest = 0.0;
-    for (std::size_t i = 0; i < states.size(); ++i)
+    for (size_t i = 0; i < states.size(); ++i)
     {
       const auto k = static_cast<Eigen::Index>(i);
       if (states[i] == NodeState::STICK)
@@ -195,7 +195,7 @@ TEST(CreepCurveTest, IsCartersForEqualMaterials)
   EXPECT_EQ(curve.traction.back(), 1.0);
   EXPECT_LT(curve.other_direction, 1e-9);
   const HertzLine hertz = hertzLine(*study.load, study.radius, run.materials.reducedModulus());
-  for (std::size_t i = 0; i < curve.creepage.size(); ++i)
+  for (size_t i = 0; i < curve.creepage.size(); ++i)
   {
     if (i > 0)
     {
@@ -235,7 +235,7 @@ TEST(RollingCaseTest, RepeatedRunsGiveTheSameBits)
 {
   const std::vector<RollingRun> first = runRollingCase(example("paper")), second = runRollingCase(example("paper"));
   ASSERT_EQ(first.size(), second.size());
-  for (std::size_t i = 0; i < first.size(); ++i)
+  for (size_t i = 0; i < first.size(); ++i)
   {
     EXPECT_EQ(first[i].contact.r_N, second[i].contact.r_N);
     EXPECT_EQ(first[i].contact.r_T, second[i].contact.r_T);

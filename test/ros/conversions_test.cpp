@@ -83,7 +83,8 @@ TEST(ConversionsTest, ContactForcesOfARestingBoxAreItsWeight)
 TEST(ConversionsTest, StepReportCopiesTheSummary)
 {
   Simulator simulator(boxScenario());
-  const StepSummary& summary = simulator.step();
+  simulator.step();
+  const StepSummary& summary = simulator.report();
   StepReport message;
   fillStepReport(summary, 0.5, ros::Time(1, 2), message);
   EXPECT_EQ(message.step, 1u);
@@ -230,10 +231,10 @@ TEST(MarkersTest, ArrowsOfContactsThatAreGoneAreDeleted)
   visualization_msgs::MarkerArray message;
   const double scale = defaultForceScale(simulator);
   EXPECT_NEAR(scale * 98.1, 0.5, 1e-15);  // half a metre for the weight
-  const std::size_t arrows = fillMarkers(simulator, ros::Time(0, 1), scale, 6, message);
+  const size_t arrows = fillMarkers(simulator, ros::Time(0, 1), scale, 6, message);
   ASSERT_EQ(arrows, simulator.contacts().size());
   ASSERT_EQ(message.markers.size(), 7u);
-  for (std::size_t i = 0; i < 6; ++i)
+  for (size_t i = 0; i < 6; ++i)
   {
     EXPECT_EQ(message.markers[i].action,
               i < arrows ? visualization_msgs::Marker::ADD : visualization_msgs::Marker::DELETE);

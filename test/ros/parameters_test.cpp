@@ -25,7 +25,7 @@ XmlRpcValue list(const std::vector<double>& numbers)
 {
   XmlRpcValue value;
   value.setSize(static_cast<int>(numbers.size()));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
+  for (size_t i = 0; i < numbers.size(); ++i)
   {
     value[static_cast<int>(i)] = numbers[i];
   }
@@ -36,7 +36,7 @@ XmlRpcValue names(const std::vector<std::string>& strings)
 {
   XmlRpcValue value;
   value.setSize(static_cast<int>(strings.size()));
-  for (std::size_t i = 0; i < strings.size(); ++i)
+  for (size_t i = 0; i < strings.size(); ++i)
   {
     value[static_cast<int>(i)] = strings[i];
   }

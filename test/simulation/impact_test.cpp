@@ -201,7 +201,7 @@ TEST(StackTest, TenBoxesHeavyOnLightStandStill)
     ASSERT_LT(simulator.report().residual, 1e-8);
   }
   for (const ContactState& contact : simulator.contacts())
-    if (simulator.shape(contact.shape_b).robot < 0)
+    if (simulator.shape(contact.shape_b).body < 0)
       weight += contact.impulse.z() / 1e-3;
   EXPECT_NEAR(weight, 1009.0 * GRAVITY, 1e-3);
 }

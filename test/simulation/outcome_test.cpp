@@ -63,7 +63,8 @@ TEST(StepOutcomeTest, DumpsOfARunEndAtTheirNumber)
 /** Two massless gimbal links and a rotor: at the angle 0 of the second joint, the first moves no inertia. */
 Scenario gimbalScene()
 {
-  const std::string massless = "<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial>";
+  const std::string massless =
+      "<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial>";
   const auto joint = [](const std::string& name, const std::string& parent, const std::string& child,
                         const std::string& axis, const std::string& limit)
   {

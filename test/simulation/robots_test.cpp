@@ -38,7 +38,7 @@ double supportForce(const Simulator& simulator)
 {
   double force = 0.0;
   for (const ContactState& contact : simulator.contacts())
-    if (simulator.shape(contact.shape_b).robot < 0)
+    if (simulator.shape(contact.shape_b).body < 0)
       force += contact.impulse.z() / simulator.report().dt;
   return force;
 }

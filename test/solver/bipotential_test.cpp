@@ -12,7 +12,7 @@ double bipotentialValue(const DelassusProblem& problem, const Eigen::VectorXd& r
 {
   const Eigen::VectorXd u = problem.W.toDense() * r + problem.q;
   double value = u.dot(r);
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
   {
     const auto row = static_cast<Eigen::Index>(3 * i);
     value += problem.laws[i].coefficient * r[row] * u.segment<2>(row + 1).norm();

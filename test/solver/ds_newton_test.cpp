@@ -58,7 +58,7 @@ TEST(DsNewtonTest, FirstIterateIsNewtonOnTheProjectionFunction)
                                Eigen::VectorXd f(6);
                                for (int i = 0; i < 2; ++i)
                                {
-                                 const double mu = problem.laws[static_cast<std::size_t>(i)].coefficient;
+                                 const double mu = problem.laws[static_cast<size_t>(i)].coefficient;
                                  Eigen::Vector3d shifted = u.segment<3>(3 * i);
                                  shifted[0] += mu * shifted.tail<2>().norm();
                                  const Eigen::Vector3d impulse = r.segment<3>(3 * i);

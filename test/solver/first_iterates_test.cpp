@@ -25,7 +25,7 @@ VectorFunction textbookAlartCurnier(const DelassusProblem& problem, RadiusRule r
     for (int i = 0; i < 2; ++i)
     {
       const double trial = r[3 * i] - 0.5 * u[3 * i];
-      const double radius = problem.laws[static_cast<std::size_t>(i)].coefficient *
+      const double radius = problem.laws[static_cast<size_t>(i)].coefficient *
                             std::max(0.0, rule == RadiusRule::IMPULSE ? r[3 * i] : trial);
       Eigen::Vector2d y = r.segment<2>(3 * i + 1) - 0.5 * u.segment<2>(3 * i + 1);
       if (y.norm() > radius)

@@ -82,7 +82,7 @@ void expectLawErrors(const std::vector<Law>& laws, const DelassusProblem& local,
   computeStepLengths(local, rho);
   ASSERT_EQ(result.law_errors.size(), static_cast<Eigen::Index>(laws.size()));
   int row = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
   {
     const auto index = static_cast<Eigen::Index>(i);
     EXPECT_EQ(result.law_errors[index],
@@ -117,7 +117,7 @@ TEST(HistoryTest, OneEntryAtLeastForEachStepOfNewtonAndTheResidualFalls)
   const SolverResult result = solver->solve(reduce(contacts(3, 2)));
   ASSERT_EQ(result.status, SolverStatus::CONVERGED);
   ASSERT_GT(result.iterations, 1);
-  EXPECT_GT(result.history.size(), static_cast<std::size_t>(result.iterations));
+  EXPECT_GT(result.history.size(), static_cast<size_t>(result.iterations));
   EXPECT_EQ(result.history.front().iteration, 0);
   EXPECT_GT(result.history.front().residual, 1e-3);
   EXPECT_EQ(result.history.back().iteration, result.iterations);
@@ -129,7 +129,7 @@ TEST(HistoryTest, AResultUsedAgainTellsTheLastSolveOnly)
   solver->setStopping(stopping(true));
   SolverResult result;
   solver->solve(contacts(3, 2), nullptr, result);
-  const std::size_t count = result.history.size();
+  const size_t count = result.history.size();
   solver->solve(contacts(3, 2), nullptr, result);
   EXPECT_EQ(result.history.size(), count);
 }

@@ -51,11 +51,11 @@ Union unite(const std::vector<DelassusProblem>& parts)
   Union whole;
   whole.rows.resize(parts.size());
   int count = 0;
-  std::size_t longest = 0;
+  size_t longest = 0;
   for (const DelassusProblem& part : parts)
     longest = std::max(longest, part.laws.size());
-  for (std::size_t i = 0; i < longest; ++i)
-    for (std::size_t k = 0; k < parts.size(); ++k)
+  for (size_t i = 0; i < longest; ++i)
+    for (size_t k = 0; k < parts.size(); ++k)
       if (i < parts[k].laws.size())
       {
         whole.problem.laws.push_back(parts[k].laws[i]);
@@ -64,13 +64,13 @@ Union unite(const std::vector<DelassusProblem>& parts)
       }
   MatrixXd W = MatrixXd::Zero(count, count);
   whole.problem.q.resize(count);
-  for (std::size_t k = 0; k < parts.size(); ++k)
+  for (size_t k = 0; k < parts.size(); ++k)
   {
     const MatrixXd block = parts[k].W.toDense();
-    for (std::size_t i = 0; i < whole.rows[k].size(); ++i)
+    for (size_t i = 0; i < whole.rows[k].size(); ++i)
     {
       whole.problem.q[whole.rows[k][i]] = parts[k].q[static_cast<Eigen::Index>(i)];
-      for (std::size_t j = 0; j < whole.rows[k].size(); ++j)
+      for (size_t j = 0; j < whole.rows[k].size(); ++j)
         W(whole.rows[k][i], whole.rows[k][j]) = block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
   }
@@ -81,7 +81,7 @@ Union unite(const std::vector<DelassusProblem>& parts)
 VectorXd slice(const VectorXd& whole, const std::vector<int>& rows)
 {
   VectorXd values(static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  for (size_t i = 0; i < rows.size(); ++i)
     values[static_cast<Eigen::Index>(i)] = whole[rows[i]];
   return values;
 }
@@ -186,7 +186,7 @@ TEST(IslandsTest, EveryMethodSolvesThemAsIfAlone)
     const SolverResult together = entry.create()->solve(whole.problem);
     int iterations = 0;
     bool all = true;
-    for (std::size_t k = 0; k < parts.size(); ++k)
+    for (size_t k = 0; k < parts.size(); ++k)
     {
       const SolverResult alone = entry.create()->solve(parts[k]);
       iterations = std::max(iterations, alone.iterations);
@@ -224,7 +224,7 @@ TEST(IslandsTest, EachGetsItsPartOfTheGuess)
       disturbed.r[row] = 0.0;
     const SolverResult third = solver->solve(whole.problem, &disturbed);
     EXPECT_EQ(third.status, SolverStatus::CONVERGED);
-    for (const std::size_t k : {std::size_t(1), std::size_t(2)})
+    for (const size_t k : {size_t(1), size_t(2)})
       EXPECT_EQ((slice(third.solution.r, whole.rows[k]) - slice(first.solution.r, whole.rows[k])).norm(), 0.0);
   }
 }
@@ -241,7 +241,7 @@ TEST(IslandsTest, AHopelessOneLeavesTheOthersTheirAnswers)
     EXPECT_NE(together.status, SolverStatus::CONVERGED);
     EXPECT_GT(together.residual, 1e-8);
     EXPECT_NE(together.message, "");
-    for (std::size_t k = 0; k + 1 < parts.size(); ++k)
+    for (size_t k = 0; k + 1 < parts.size(); ++k)
     {
       const SolverResult alone = entry.create()->solve(parts[k]);
       EXPECT_EQ((slice(together.solution.r, whole.rows[k]) - alone.solution.r).norm(), 0.0) << "part " << k;
@@ -300,8 +300,8 @@ TEST(IslandsTest, LargeOnesKeepBlockStorage)
   ASSERT_EQ(islands.find(problem.W), 2);
   std::vector<int> chain, position(laws.size(), -1);
   islands.laws(1, chain);
-  for (std::size_t k = 0; k < chain.size(); ++k)
-    position[static_cast<std::size_t>(chain[k])] = static_cast<int>(k);
+  for (size_t k = 0; k < chain.size(); ++k)
+    position[static_cast<size_t>(chain[k])] = static_cast<int>(k);
   DelassusOperator island;
   island.assignBlocks(problem.W, chain, position, std::vector<Law>(LINKS, CONTACT));
   EXPECT_FALSE(island.isDense());
@@ -309,7 +309,7 @@ TEST(IslandsTest, LargeOnesKeepBlockStorage)
   for (int i = 0; i < LINKS; ++i)
     for (int j = 0; j < LINKS; ++j)
       expected.block<3, 3>(3 * i, 3 * j) =
-          W.block<3, 3>(3 * chain[static_cast<std::size_t>(i)], 3 * chain[static_cast<std::size_t>(j)]);
+          W.block<3, 3>(3 * chain[static_cast<size_t>(i)], 3 * chain[static_cast<size_t>(j)]);
   EXPECT_EQ((island.toDense() - expected).norm(), 0.0);
   EXPECT_EQ((island.diagonalBlock<3>(5) - 2.0 * Eigen::Matrix3d::Identity()).norm(), 0.0);
   for (const char* name : {"portfolio", "gauss_seidel"})

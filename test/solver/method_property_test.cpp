@@ -98,7 +98,7 @@ TEST(MethodPropertyTest, PlanarContactsInSpaceAgreeWithLemkeInThePlane)
     for (int i = 0; i < 4; ++i)
     {
       rows.middleRows(3 * i, 2) = H.middleRows(2 * i, 2);
-      problem.laws[static_cast<std::size_t>(i)].type = LawType::COULOMB_3D;
+      problem.laws[static_cast<size_t>(i)].type = LawType::COULOMB_3D;
     }
     problem.H = sparse(rows);
     problem.w.setZero(12);

@@ -87,7 +87,7 @@ inline VectorFunction textbookSystem(const DelassusProblem& problem, double alph
     Eigen::VectorXd phi(6);
     for (int i = 0; i < 2; ++i)
     {
-      const double mu = problem.laws[static_cast<std::size_t>(i)].coefficient;
+      const double mu = problem.laws[static_cast<size_t>(i)].coefficient;
       const Eigen::Vector3d r = z.segment<3>(3 * i), u = c.segment<3>(3 * i);
       const Eigen::Vector3d x(mu * r[0], r[1], r[2]);
       const Eigen::Vector3d y(u[0] + mu * u.tail<2>().norm(), mu * u[1], mu * u[2]);

@@ -50,12 +50,12 @@ IncrementalProblem pickContacts(const IncrementalProblem& problem, const std::ve
   MatrixXd rows(3 * order.size(), H.cols());
   picked.w.resize(rows.rows());
   picked.laws.clear();
-  for (std::size_t k = 0; k < order.size(); ++k)
+  for (size_t k = 0; k < order.size(); ++k)
   {
     const auto target = 3 * static_cast<Eigen::Index>(k);
     rows.middleRows(target, 3) = H.middleRows(3 * order[k], 3);
     picked.w.segment<3>(target) = problem.w.segment<3>(3 * order[k]);
-    picked.laws.push_back(problem.laws[static_cast<std::size_t>(order[k])]);
+    picked.laws.push_back(problem.laws[static_cast<size_t>(order[k])]);
   }
   picked.H = sparse(rows);
   return picked;
@@ -111,7 +111,7 @@ TEST(SolutionPropertyTest, WithoutFrictionTheTangentialRowsDoNotMatter)
     normal.laws.assign(6, {LawType::UNILATERAL, 0.0});
     for (int i = 0; i < 6; ++i)
     {
-      problem.laws[static_cast<std::size_t>(i)].coefficient = 0.0;
+      problem.laws[static_cast<size_t>(i)].coefficient = 0.0;
       rows.row(i) = H.row(3 * i);
       normal.w[i] = problem.w[3 * i];
     }
@@ -136,7 +136,7 @@ TEST(SolutionPropertyTest, PlaneContactsAreSpaceContactsWithoutASecondTangent)
     for (int i = 0; i < 6; ++i)
     {
       rows.middleRows(3 * i, 2) = H.middleRows(2 * i, 2);
-      space.laws[static_cast<std::size_t>(i)].type = LawType::COULOMB_3D;
+      space.laws[static_cast<size_t>(i)].type = LawType::COULOMB_3D;
     }
     space.w.setZero(18);
     space.H = sparse(rows);

@@ -37,7 +37,7 @@ struct Gaussian
 
 std::vector<Law> contacts(int count, double friction)
 {
-  return std::vector<Law>(static_cast<std::size_t>(count), Law{LawType::COULOMB_3D, friction});
+  return std::vector<Law>(static_cast<size_t>(count), Law{LawType::COULOMB_3D, friction});
 }
 
 /// H with 3 n_c rows of rank 3 n_c / ratio, w = 0: solvable always (Cadoux 2009, chapter 3).

@@ -258,7 +258,7 @@ TEST(SubsetSumTest, EverySubsetThatSumsIsASolution)
     for (int i = 0; i < 3; ++i)
     {
       chosen.push_back((subset >> i) % 2 == 1);
-      const double value = values[static_cast<std::size_t>(i)];
+      const double value = values[static_cast<size_t>(i)];
       total += chosen.back() ? value : 0.0;
       v[i] = chosen.back() ? 0.0 : value;  // a bar slides and stands, or takes off
     }

@@ -40,32 +40,32 @@ long AllocationCounter::count() const
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C"
 {
-  void* __libc_malloc(std::size_t size);
-  void* __libc_calloc(std::size_t count, std::size_t size);
-  void* __libc_realloc(void* memory, std::size_t size);
-  void* __libc_memalign(std::size_t alignment, std::size_t size);
+  void* __libc_malloc(size_t size);
+  void* __libc_calloc(size_t count, size_t size);
+  void* __libc_realloc(void* memory, size_t size);
+  void* __libc_memalign(size_t alignment, size_t size);
 
-  void* malloc(std::size_t size)
+  void* malloc(size_t size)
   {
     note();
     return __libc_malloc(size);
   }
-  void* calloc(std::size_t count, std::size_t size)
+  void* calloc(size_t count, size_t size)
   {
     note();
     return __libc_calloc(count, size);
   }
-  void* realloc(void* memory, std::size_t size)
+  void* realloc(void* memory, size_t size)
   {
     note();
     return __libc_realloc(memory, size);
   }
-  void* aligned_alloc(std::size_t alignment, std::size_t size)
+  void* aligned_alloc(size_t alignment, size_t size)
   {
     note();
     return __libc_memalign(alignment, size);
   }
-  int posix_memalign(void** memory, std::size_t alignment, std::size_t size)
+  int posix_memalign(void** memory, size_t alignment, size_t size)
   {
     note();
     *memory = __libc_memalign(alignment, size);

@@ -37,7 +37,7 @@ IncrementalProblem restingBox(double mass, const Eigen::Vector3d& half_sizes, do
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(12, 6);
   for (int i = 0; i < 4; ++i)
   {
-    const Eigen::Vector3d& x = corners[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& x = corners[static_cast<size_t>(i)];
     Eigen::Matrix3d frame;  // rows: normal z, tangents x, y
     frame << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     Eigen::Matrix3d cross;

@@ -57,7 +57,7 @@ IncrementalProblem subsetSumMachine(const std::vector<double>& values, double to
     H(2 * i, i) = H(2 * i + 1, i) = 1.0;
     H(2 * i + 1, base) = -1.0;
     w[2 * i + 1] = 1.0;
-    f[i] = -values[static_cast<std::size_t>(i)];
+    f[i] = -values[static_cast<size_t>(i)];
   }
   f[base] = 2.0 * total;
   for (const Eigen::Index bar : {left, right})
@@ -67,13 +67,13 @@ IncrementalProblem subsetSumMachine(const std::vector<double>& values, double to
     w[2 * bar + 1] = 1.0;
   }
   return denseProblem(MatrixXd::Identity(k + 3, k + 3), f, H, w,
-                      std::vector<Law>(static_cast<std::size_t>(k + 2), Law{LawType::COULOMB_2D, 2.0}));
+                      std::vector<Law>(static_cast<size_t>(k + 2), Law{LawType::COULOMB_2D, 2.0}));
 }
 
 VectorXd subsetSumImpulses(const std::vector<double>& values, const std::vector<bool>& chosen)
 {
   VectorXd r = VectorXd::Zero(2 * static_cast<Eigen::Index>(values.size()) + 4);
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (size_t i = 0; i < values.size(); ++i)
     if (chosen[i])
       r.segment<2>(2 * static_cast<Eigen::Index>(i)) = values[i] * Eigen::Vector2d(1, -2);
   return r;

@@ -70,7 +70,7 @@ void judgeLaws(const std::vector<Law>& laws, const MatrixXd& W, const VectorXd& 
   double worst = 0.0, impulse = 0.0;
   const double velocity = std::max({largest(q), largest(u), 1e-12});
   row = 0;
-  for (std::size_t i = 0; i < laws.size(); ++i)
+  for (size_t i = 0; i < laws.size(); ++i)
   {
     const int d = laws[i].dimension();
     const double rho = 1.0 / (lambda[i] > 0.0 ? lambda[i] : biggest > 0.0 ? biggest : 1.0);

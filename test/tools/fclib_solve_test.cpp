@@ -61,12 +61,12 @@ protected:
 };
 
 /// Overwrites one number of a data set.
-void setEntry(const std::string& path, const std::string& name, std::size_t index, double value)
+void setEntry(const std::string& path, const std::string& name, size_t index, double value)
 {
   const hid_t handle = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t dataset = H5Dopen2(handle, name.c_str(), H5P_DEFAULT);
   const hid_t space = H5Dget_space(dataset);
-  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  std::vector<double> values(static_cast<size_t>(H5Sget_simple_extent_npoints(space)));
   H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   values.at(index) = value;
   EXPECT_GE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << name;
@@ -231,7 +231,7 @@ TEST_F(FclibSolveTest, FilesThatAreNoneAreRefusedInOneLine)
   std::ofstream(file("text.hdf5")) << "not HDF5";
   expectRefused(solve(file("text.hdf5")), "not an HDF5 file");
   const std::string bytes = textOf(globalFile());
-  for (const std::size_t keep : {std::size_t(0), std::size_t(100), bytes.size() / 2, bytes.size() - 10})
+  for (const size_t keep : {size_t(0), size_t(100), bytes.size() / 2, bytes.size() - 10})
   {
     std::ofstream(file("cut.hdf5"), std::ios::binary | std::ios::trunc) << bytes.substr(0, keep);
     expectRefused(solve(file("cut.hdf5")), "cut.hdf5");

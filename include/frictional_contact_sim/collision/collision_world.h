@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file collision_world.h
- * @brief Contact points between the shapes of several robots and the ground.
+ * @brief Contact points between the shapes of several bodies and the ground.
  *
  * FCL gives the broad phase when there are many shapes; contact points, gaps and normals are computed in closed form
  * from the supporting features (face, edge, vertex, primitive) to round-off (narrow_phase.h). At most 8 points a pair.
@@ -22,13 +22,13 @@ namespace frictional_contact_sim
 /**
  * @brief One contact point between shape_a and shape_b; the normal points from b to a.
  *
- * A static shape is always b; of two shapes of robots, a has the lower handle. The id is the four 16-bit numbers
+ * A static shape is always b; of two shapes of bodies, a has the lower handle. The id is the four 16-bit numbers
  * shape_a, shape_b, feature of a, feature of b side by side, so no two points share one.
  */
 struct ContactPoint
 {
   std::uint64_t id = 0;  ///< same pair of features: same id, as long as it persists
-  int shape_a = 0;  ///< 0, 1, ... in the order of addRobot / addStatic
+  int shape_a = 0;  ///< 0, 1, ... in the order of addBody / addStatic
   int shape_b = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world, midway between the two surface points [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< world, unit, from b to a
@@ -38,11 +38,11 @@ struct ContactPoint
 /** @brief What a shape handle stands for. */
 struct ShapeInfo
 {
-  int robot = -1;  ///< index from addRobot; -1 for static shapes
-  int body = -1;  ///< body in the robot's model; -1 for static shapes
-  int frame = -1;  ///< URDF link in the robot's model
-  int index = -1;  ///< in the robot's model.shapes; -1 for static shapes
-  std::string link;  ///< URDF link name ("ground" for the plane)
+  int body = -1;  ///< index from addBody; -1 for static shapes
+  int link = -1;  ///< link in the body's model; -1 for static shapes
+  int frame = -1;  ///< URDF link in the body's model
+  int index = -1;  ///< in the body's model.shapes; -1 for static shapes
+  std::string link_name;  ///< URDF link name ("ground" for the plane)
   std::string name;  ///< collision name
 };
 
@@ -64,30 +64,30 @@ public:
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
   /**
-   * @brief Adds all shapes of a robot; loads its meshes (convex hulls). Pairs on one body, and on bodies joined by one
-   * joint, never collide; nor do shapes of a fixed base body with static shapes.
-   * @return index of the robot
+   * @brief Adds all shapes of a body; loads its meshes (convex hulls). Pairs on one link, and on bodies joined by one
+   * joint, never collide; nor do shapes of a fixed base with static shapes.
+   * @return index of the body
    * @throws ModelError for a mesh that cannot be read: file and reason
    */
-  int addRobot(const MultibodyModel& model);
+  int addBody(const MultibodyModel& model);
   /** @brief Adds a shape fixed in the world, the ground plane for example. @return shape handle */
   int addStatic(const Geometry& geometry, const Eigen::Isometry3d& pose, const std::string& name);
 
-  /** @brief Two links of a robot never collide. @throws std::invalid_argument naming an unknown link */
-  void disablePair(int robot, const std::string& link_1, const std::string& link_2);
+  /** @brief Two links of a body never collide. @throws std::invalid_argument naming an unknown link */
+  void disablePair(int body, const std::string& link_1, const std::string& link_2);
 
   /**
-   * @brief Disables the pairs of links *within one robot* that overlap now (initial pose; gap < -1e-9 m, so links that
-   * only touch still collide), and those of a robot on a fixed base with static shapes: what is mounted in the ground
+   * @brief Disables the pairs of links *within one body* that overlap now (initial pose; gap < -1e-9 m, so links that
+   * only touch still collide), and those of a body on a fixed base with static shapes: what is mounted in the ground
    * can never leave it. Needs setPoses.
    * @return "link_1 - link_2" of each pair disabled
    */
   std::vector<std::string> disableOverlaps();
 
-  /** @brief Body poses of a robot, from its data. */
-  void setPoses(int robot, const MultibodyData& data);
-  /** @brief The same for one body. */
-  void setBodyPose(int robot, int body, const Eigen::Isometry3d& pose);
+  /** @brief Link poses of a body, from its data. */
+  void setPoses(int body, const MultibodyData& data);
+  /** @brief The same for one link. */
+  void setLinkPose(int body, int link, const Eigen::Isometry3d& pose);
 
   /**
    * @brief Contact points with gap <= margin, ordered by (shape_a, shape_b, feature): deterministic. No allocation
@@ -95,8 +95,8 @@ public:
    */
   const std::vector<ContactPoint>& detect(double margin);
 
-  /** @brief Lowest z over all points of all shapes of a robot at the poses set [m]; +infinity without shapes. */
-  double lowestPoint(int robot) const;
+  /** @brief Lowest z over all points of all shapes of a body at the poses set [m]; +infinity without shapes. */
+  double lowestPoint(int body) const;
 
   int shapeCount() const;
   const ShapeInfo& shape(int handle) const;

@@ -61,13 +61,11 @@ struct Manifold
   std::vector<Eigen::Vector3d> side_normals;  ///< outwards, in the plane of the reference face
 
   /** @brief Room for shapes with up to this many vertices, so that no later call allocates. */
-  void reserve(std::size_t vertices);
+  void reserve(size_t vertices);
   void add(const PairContact& point)
   {
     if (count == static_cast<int>(points.size()))
-    {
       points.resize(2 * points.size());
-    }
     points[count++] = point;
   }
 };

@@ -96,7 +96,7 @@ struct RollingShape
    * @brief Matrix S of s = S omega at a contact; zero and `round` false where the shape is flat there (a cylinder
    * whose axis is within 60 degrees of the normal stands on its face).
    */
-  Eigen::Matrix3d spin(const Eigen::Isometry3d& body_pose, const Eigen::Vector3d& position,
+  Eigen::Matrix3d spin(const Eigen::Isometry3d& link_pose, const Eigen::Vector3d& position,
                        const Eigen::Vector3d& normal, bool& round) const;
 };
 

@@ -17,7 +17,7 @@ public:
   /** @brief n sets of one; storage is reused. */
   void reset(int n)
   {
-    parent_.resize(static_cast<std::size_t>(n));
+    parent_.resize(static_cast<size_t>(n));
     std::iota(parent_.begin(), parent_.end(), 0);
   }
   /** @brief Smallest member of i's set. */
@@ -36,7 +36,7 @@ public:
   }
 
 private:
-  int& parent(int i) { return parent_[static_cast<std::size_t>(i)]; }
+  int& parent(int i) { return parent_[static_cast<size_t>(i)]; }
   std::vector<int> parent_;
 };
 

@@ -32,11 +32,11 @@ void solveMassMatrix(const MultibodyModel& model, const MultibodyData& data, Vec
 void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eigen::Vector3d& gravity,
                        MultibodyData& data, VectorOut bias);
 
-/** @brief Adds J^T (force; torque) of a wrench at a body-fixed point to tau (nv). World axes, [N], [N m]. */
-void addWrench(const MultibodyModel& model, const MultibodyData& data, int body, const Eigen::Vector3d& point,
+/** @brief Adds J^T (force; torque) of a wrench at a link-fixed point to tau (nv). World axes, [N], [N m]. */
+void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau);
 
-/** @brief 1/2 v^T M v from body velocities [J]. Needs forwardVelocities. */
+/** @brief 1/2 v^T M v from link velocities [J]. Needs forwardVelocities. */
 double kineticEnergy(const MultibodyModel& model, const MultibodyData& data);
 
 /** @brief -sum m g . c [J]. Needs forwardKinematics. */

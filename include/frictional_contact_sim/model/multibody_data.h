@@ -4,8 +4,8 @@
  * @brief Workspace of the algorithms in model/kinematics.h and model/dynamics_algorithms.h, sized once from the model.
  *
  * Everything is in world axes. Spatial vectors are (linear; angular) and refer to the point `reference`, the origin of
- * the root body at the time of forwardKinematics (small lever arms wherever the robot stands): the linear part of a
- * motion vector is the velocity of the body-fixed point that is at `reference`. Because everything shares one frame,
+ * the root link at the time of forwardKinematics (small lever arms wherever the robot stands): the linear part of a
+ * motion vector is the velocity of the link-fixed point that is at `reference`. Because everything shares one frame,
  * composite inertias add without a transform (cf. Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5 and 6).
  */
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace frictional_contact_sim
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/** @brief Mass, first and second moment about `reference`, world axes; sums over bodies. */
+/** @brief Mass, first and second moment about `reference`, world axes; sums over links. */
 struct WorldInertia
 {
   double mass = 0.0;  ///< [kg]
@@ -36,11 +36,11 @@ struct MultibodyData
 
   // written by forwardKinematics
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Isometry3d> body_pose;  ///< bodies: body frame in the world
+  std::vector<Eigen::Isometry3d> link_pose;  ///< links: link frame in the world
   Matrix6Xd motion_subspace;  ///< 6 x nv: column j is the motion of unit v_j
-  std::vector<WorldInertia> body_inertia;  ///< bodies
+  std::vector<WorldInertia> link_inertia;  ///< links
   // written by forwardVelocities
-  std::vector<Vector6d> body_velocity;  ///< bodies
+  std::vector<Vector6d> link_velocity;  ///< links
   // written by computeMassMatrix
   Eigen::MatrixXd mass_matrix;  ///< nv x nv, both triangles
   // written by factorizeMassMatrix
@@ -49,8 +49,8 @@ struct MultibodyData
   // scratch
   Eigen::VectorXd factor_row;  ///< nv
   std::vector<WorldInertia> composite_inertia;
-  std::vector<Vector6d> body_acceleration;
-  std::vector<Vector6d> body_force;
+  std::vector<Vector6d> link_acceleration;
+  std::vector<Vector6d> link_force;
 };
 
 }  // namespace frictional_contact_sim

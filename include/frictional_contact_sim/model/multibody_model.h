@@ -1,11 +1,11 @@
 #pragma once
 /**
  * @file multibody_model.h
- * @brief A tree of rigid bodies in Lagrangian coordinates: the constant part (Model of Model / Data / free functions).
+ * @brief A tree of rigid links in Lagrangian coordinates: the constant part (Model of Model / Data / free functions).
  *
- * Bodies are URDF links after lumping fixed joints; body i moves relative to its parent (-1 = world) by joint i, and
- * parents come before children. Body 0 is the root; its joint is FLOATING or FIXED (the base). Every URDF link, lumped
- * or not, is a Frame of its body.
+ * Links are URDF links after lumping fixed joints; link i moves relative to its parent (-1 = world) by joint i, and
+ * parents come before children. Link 0 is the root; its joint is FLOATING or FIXED (the base). Every URDF link, lumped
+ * or not, is a Frame of its link.
  *
  * Coordinates of a joint, in its joint frame on the parent (q: nq numbers, v: nv numbers):
  *   REVOLUTE, CONTINUOUS  angle [rad]                                     | angular velocity about the axis
@@ -52,8 +52,8 @@ Eigen::Matrix<double, 3, 2> planarAxes(const Eigen::Vector3d& normal);
 struct RigidInertia
 {
   double mass = 0.0;  ///< [kg]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centre of mass in the body frame [m]
-  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();  ///< about the centre of mass, body axes [kg m^2]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centre of mass in the link frame [m]
+  Eigen::Matrix3d rotational = Eigen::Matrix3d::Zero();  ///< about the centre of mass, link axes [kg m^2]
 };
 
 /** @brief URDF's <limit>; without one, positions are unbounded and effort is unlimited. */
@@ -76,8 +76,8 @@ struct Joint
 {
   std::string name;  ///< URDF name; the base's is empty
   JointType type = JointType::FIXED;
-  int parent = -1;  ///< body this joint hangs on, -1 = world
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< joint frame in the parent body frame
+  int parent = -1;  ///< link this joint hangs on, -1 = world
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link frame
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector, joint frame (PLANAR: plane normal)
   int q_index = 0;  ///< first coordinate in q
   int v_index = 0;  ///< first coordinate in v
@@ -87,44 +87,44 @@ struct Joint
   Mimic mimic;
 };
 
-/** @brief A moving body: one or more URDF links rigidly joined. */
+/** @brief A moving link: one or more URDF links rigidly joined. */
 struct Link
 {
   std::string name;  ///< of its root link
   RigidInertia inertia;
 };
 
-/** @brief A URDF link in the body that carries it. */
+/** @brief A URDF link in the link that carries it. */
 struct Frame
 {
   std::string name;
-  int body = 0;
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< link frame in the body frame
+  int link = 0;
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< link frame in the link frame
 };
 
 struct CollisionShape
 {
   std::string name;  ///< URDF collision name, or link_collision_k
   int frame = 0;  ///< index of the URDF link
-  int body = 0;
+  int link = 0;
   Geometry geometry;
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< shape frame in the body frame
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< shape frame in the link frame
   double friction = -1.0;  ///< Gazebo's mu1 where given, else negative: the material decides
 };
 
 struct MultibodyModel
 {
   std::string name;
-  std::vector<Link> bodies;  ///< parents first
-  std::vector<Joint> joints;  ///< joint i moves body i
+  std::vector<Link> links;  ///< parents first
+  std::vector<Joint> joints;  ///< joint i moves link i
   std::vector<Frame> frames;
   std::vector<CollisionShape> shapes;
   int nq = 0;
   int nv = 0;
   std::vector<int> dof_parent;  ///< nv: the velocity coordinate before this one on the way to the root, -1 at the root
   std::vector<int> dof_run;  ///< nv: first coordinate of the unbroken run (dof_parent[i] = i - 1) that ends here
-  std::vector<int> dof_body;  ///< nv: body moved by the coordinate
-  std::vector<int> body_dof;  ///< bodies: last velocity coordinate on the way from the root to the body, -1 = none
+  std::vector<int> dof_link;  ///< nv: link moved by the coordinate
+  std::vector<int> link_dof;  ///< links: last velocity coordinate on the way from the root to the link, -1 = none
 
   /** @return index or -1 */
   int findJoint(const std::string& joint_name) const;
@@ -133,9 +133,9 @@ struct MultibodyModel
 };
 
 /**
- * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_run, dof_body, body_dof from the joints. Call after editing
+ * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_run, dof_link, link_dof from the joints. Call after editing
  * joints by hand.
- * @throws std::invalid_argument when joints and bodies differ in number, a parent does not come first, or an axis is
+ * @throws std::invalid_argument when joints and links differ in number, a parent does not come first, or an axis is
  * not a unit vector
  */
 void finalize(MultibodyModel& model);

@@ -104,9 +104,9 @@ public:
   int rows() const { return offsets_.empty() ? 0 : offsets_.back(); }
   int blocks() const { return static_cast<int>(offsets_.size()) - (offsets_.empty() ? 0 : 1); }
   /** @brief First row of block i. */
-  int offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
+  int offset(int i) const { return offsets_[static_cast<size_t>(i)]; }
   /** @brief The block of a row or column. */
-  int blockOf(int row) const { return block_of_row_[static_cast<std::size_t>(row)]; }
+  int blockOf(int row) const { return block_of_row_[static_cast<size_t>(row)]; }
   int dimension(int i) const { return offset(i + 1) - offset(i); }
   bool isDense() const { return is_dense_; }
   bool isMatrixFree() const { return is_matrix_free_; }
@@ -184,7 +184,7 @@ inline Vector<D> DelassusOperator::storedProduct(int i, const Eigen::VectorXd& x
 {
   // Two sums: one would wait for its own last addition at every column.
   Vector<D> even = Vector<D>::Zero(), odd = Vector<D>::Zero();
-  const auto row = static_cast<std::size_t>(i);
+  const auto row = static_cast<size_t>(i);
   const double* value = values_.data() + value_begin_[row];
   const int* column = columns_.data() + row_begin_[row];
   const int* const end = columns_.data() + row_begin_[row + 1];
@@ -203,7 +203,7 @@ inline SquareMatrix<D> DelassusOperator::diagonalBlock(int i) const
 {
   if (is_dense_)
     return dense_.block<D, D>(offset(i), offset(i));
-  return Eigen::Map<const SquareMatrix<D>>(values_.data() + diagonal_[static_cast<std::size_t>(i)]);
+  return Eigen::Map<const SquareMatrix<D>>(values_.data() + diagonal_[static_cast<size_t>(i)]);
 }
 
 template <typename Visitor>
@@ -224,11 +224,11 @@ inline void DelassusOperator::visitRow(int i, Visitor visit) const
 template <typename Visitor>
 inline void DelassusOperator::visitHalfRow(int i, Visitor visit) const
 {
-  const auto row = static_cast<std::size_t>(i);
+  const auto row = static_cast<size_t>(i);
   const int d = dimension(i);
   const double* value = values_.data() + value_begin_[row];
   for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k, value += d)
-    visit(columns_[static_cast<std::size_t>(k)], value, 1);
+    visit(columns_[static_cast<size_t>(k)], value, 1);
 }
 
 }  // namespace frictional_contact_sim

@@ -70,7 +70,7 @@ private:
   void analyse(const IncrementalProblem& problem);
   void findLoops(const SparseRows& G);
   void collectPattern(const SparseRows& matrix, int first_row, int last_row, int mark);
-  void addLoops(std::size_t law, int mark);
+  void addLoops(size_t law, int mark);
   void preparePairs();
   bool sameVelocities(int i, int j) const;
   void computeHalfRows(const IncrementalProblem& problem);

@@ -35,7 +35,7 @@ public:
   /// Elimination tree (-1 at roots), permuted indices.
   const std::vector<int>& parent() const { return parent_; }
   /// Permuted index of a row of M.
-  int permuted(int row) const { return inverse_permutation_[static_cast<std::size_t>(row)]; }
+  int permuted(int row) const { return inverse_permutation_[static_cast<size_t>(row)]; }
   /// Column pointers, row indices and values of L below the diagonal, and D^(-1/2).
   const std::vector<int>& columnBegin() const { return column_begin_; }
   const std::vector<int>& rowIndices() const { return row_indices_; }

@@ -28,10 +28,10 @@ void fillJointState(const Simulator& simulator, const NameTable& names, const ro
 void fillContacts(const Simulator& simulator, const NameTable& names, const ros::Time& stamp, ContactArray& message);
 /** @brief existence and uniqueness are NOT_CHECKED: a step does not prove them. */
 void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message);
-/** @brief Pose and velocity of the root link of a robot. */
+/** @brief Pose and velocity of the root link of a body. */
 void fillOdometry(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
                   nav_msgs::Odometry& message);
-/** @brief world -> root link of a robot. */
+/** @brief world -> root link of a body. */
 void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
                    geometry_msgs::TransformStamped& message);
 

@@ -11,7 +11,7 @@
 
 namespace frictional_contact_sim
 {
-/** @brief Half a metre for the weight of all robots; 0.01 m/N where there is no weight. */
+/** @brief Half a metre for the weight of all bodies; 0.01 m/N where there is no weight. */
 double defaultForceScale(const Simulator& simulator);
 
 /**
@@ -19,7 +19,7 @@ double defaultForceScale(const Simulator& simulator);
  * @param previous_arrows arrows in the message before this one: those that are gone are deleted
  * @return arrows in this message
  */
-std::size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale,
-                        std::size_t previous_arrows, visualization_msgs::MarkerArray& message);
+size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale, size_t previous_arrows,
+                   visualization_msgs::MarkerArray& message);
 
 }  // namespace frictional_contact_sim

@@ -2,7 +2,7 @@
 /**
  * @file names.h
  * @brief How joints and links of a scenario are called on ROS topics: by their URDF name while it is unique among all
- * robots of the scenario, else `robot/name`.
+ * bodies of the scenario, else `body/name`.
  */
 #include <string>
 #include <vector>
@@ -15,8 +15,8 @@ namespace frictional_contact_sim
 struct JointHandle
 {
   std::string name;  ///< on topics
-  int body = 0;  ///< robot of the scenario
-  int joint = 0;  ///< in the robot's model
+  int body = 0;  ///< of the scenario
+  int joint = 0;  ///< in the body's model
   int q_index = 0;
   int v_index = 0;
   bool mimic = false;
@@ -24,17 +24,17 @@ struct JointHandle
 
 struct NameTable
 {
-  std::vector<JointHandle> joints;  ///< robots in order, joints in the order of their models
+  std::vector<JointHandle> joints;  ///< bodies in order, joints in the order of their models
   std::vector<int> actuated;  ///< indices into joints: those that take commands (no mimic joints)
-  std::vector<std::string> robots;  ///< by robot
-  std::vector<std::vector<std::string>> frames;  ///< by robot and frame of its model
-  std::vector<std::string> roots;  ///< tf name of each robot's root link
+  std::vector<std::string> bodies;  ///< by body
+  std::vector<std::vector<std::string>> frames;  ///< by body and frame of its model
+  std::vector<std::string> roots;  ///< tf name of each body's root link
   std::vector<std::string> unsupported_joints;  ///< planar and floating joints: no place in sensor_msgs/JointState
 };
 
 NameTable makeNameTable(const Simulator& simulator);
 
-/** @return index into table.joints, -1 when unknown; `robot/joint` is always understood. */
+/** @return index into table.joints, -1 when unknown; `body/joint` is always understood. */
 int findJoint(const NameTable& table, const std::string& name);
 
 }  // namespace frictional_contact_sim

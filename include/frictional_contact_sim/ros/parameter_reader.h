@@ -39,7 +39,7 @@ public:
   void read(const std::string& name, bool& value);
   void read(const std::string& name, std::string& value);
   /** @brief A list of numbers of the given length. */
-  void read(const std::string& name, std::vector<double>& value, std::size_t size);
+  void read(const std::string& name, std::vector<double>& value, size_t size);
   void read(const std::string& name, std::vector<std::string>& value);
   /** @brief A list of pairs of names. */
   void read(const std::string& name, std::vector<std::pair<std::string, std::string>>& value);

@@ -59,13 +59,13 @@ private:
   StepDivider marker_divider_;
   bool publish_base_tf_;
   double force_scale_;
-  std::size_t arrows_ = 0;
+  size_t arrows_ = 0;
   std::set<std::string> lossless_;
 
   ros::Publisher joint_states_publisher_;
   ros::Publisher contacts_publisher_;
   ros::Publisher step_report_publisher_;
-  std::vector<ros::Publisher> odometry_publishers_;  // by robot
+  std::vector<ros::Publisher> odometry_publishers_;  // by body
   ros::Publisher markers_publisher_;
   ros::Publisher clock_publisher_;
   ros::Publisher tf_publisher_;

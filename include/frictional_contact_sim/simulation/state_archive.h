@@ -65,7 +65,7 @@ public:
     if (count > MOST_ITEMS)
       throw StateError("number of " + name + " is " + std::to_string(count) + ", expected at most " +
                        std::to_string(MOST_ITEMS));
-    items.resize(static_cast<std::size_t>(count));
+    items.resize(static_cast<size_t>(count));
     return items;
   }
   template <class T>

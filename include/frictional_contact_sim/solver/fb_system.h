@@ -52,8 +52,8 @@ inline void FbSystem::visitJacobian(int i, Visitor visit) const
 {
   const int d = problem_->W.dimension(i);
   const int first = contacts_.offset(i);
-  const double* A = &by_c_[9 * static_cast<std::size_t>(i)];
-  const double* B = &by_z_[9 * static_cast<std::size_t>(i)];
+  const double* A = &by_c_[9 * static_cast<size_t>(i)];
+  const double* B = &by_z_[9 * static_cast<size_t>(i)];
   const Eigen::VectorXd& root = contacts_.root();
   problem_->W.visitRow(i,
                        [&](int column, const double* w, int stride)

@@ -26,7 +26,7 @@ public:
    */
   void laws(int k, std::vector<int>& laws) const;
   /** @brief Rows of the k-th island. */
-  int rows(int k) const { return rows_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])]; }
+  int rows(int k) const { return rows_[static_cast<size_t>(order_[static_cast<size_t>(k)])]; }
 
 private:
   int uniteDense(const DelassusOperator& W);

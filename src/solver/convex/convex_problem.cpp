@@ -44,7 +44,7 @@ void projectOntoConeOrCylinder(const SimpleSet& set, double* data)
 void makeConeProblem(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, ConvexProblem& convex)
 {
   prepare(problem, step_lengths, convex);
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
   {
     const Law& law = problem.laws[i];
     convex.sets[i] =
@@ -56,7 +56,7 @@ void makeCylinderProblem(const DelassusProblem& problem, const Eigen::VectorXd& 
                          const Eigen::VectorXd& thresholds, ConvexProblem& convex)
 {
   prepare(problem, step_lengths, convex);
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
   {
     const Law& law = problem.laws[i];
     const double threshold = thresholds[static_cast<Eigen::Index>(i)];
@@ -98,7 +98,7 @@ void projectOntoSet(const SimpleSet& set, double* r)
 void projectOntoSets(const ConvexProblem& problem, Eigen::VectorXd& r)
 {
   for (int i = 0; i < problem.W->blocks(); ++i)
-    projectOntoSet(problem.sets[static_cast<std::size_t>(i)], r.data() + problem.W->offset(i));
+    projectOntoSet(problem.sets[static_cast<size_t>(i)], r.data() + problem.W->offset(i));
 }
 
 double optimalityError(const ConvexProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r)
@@ -108,20 +108,20 @@ double optimalityError(const ConvexProblem& problem, const Eigen::VectorXd& u, c
   {
     // Scaled by 1/rho before projecting, so that a huge rho does not swallow u.
     const double inverse = 1.0 / problem.step_lengths[i];
-    SimpleSet set = problem.sets[static_cast<std::size_t>(i)];
+    SimpleSet set = problem.sets[static_cast<size_t>(i)];
     if (set.type == SetType::CYLINDER || set.type == SetType::INTERVAL)
       set.parameter *= inverse;
     const int first = problem.W->offset(i);
     std::array<double, 3> scaled{}, projected{};
     for (int k = 0; k < set.dimension; ++k)
     {
-      scaled[static_cast<std::size_t>(k)] = inverse * r[first + k];
-      projected[static_cast<std::size_t>(k)] = scaled[static_cast<std::size_t>(k)] - u[first + k];
+      scaled[static_cast<size_t>(k)] = inverse * r[first + k];
+      projected[static_cast<size_t>(k)] = scaled[static_cast<size_t>(k)] - u[first + k];
     }
     projectOntoSet(set, projected.data());
     double square = 0.0;
     for (int k = 0; k < set.dimension; ++k)
-      square += std::pow(scaled[static_cast<std::size_t>(k)] - projected[static_cast<std::size_t>(k)], 2);
+      square += std::pow(scaled[static_cast<size_t>(k)] - projected[static_cast<size_t>(k)], 2);
     // Not std::max: a NaN must not be lost.
     if (!(square <= largest) && !std::isnan(largest))
       largest = square;

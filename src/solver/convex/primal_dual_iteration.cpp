@@ -45,7 +45,7 @@ void PrimalDualIteration::makeCones(const ConvexProblem& problem)
   fixed_.clear();
   for (int i = 0; i < problem.W->blocks(); ++i)
   {
-    const SimpleSet& set = problem.sets[static_cast<std::size_t>(i)];
+    const SimpleSet& set = problem.sets[static_cast<size_t>(i)];
     const int first = problem.W->offset(i);
     const bool contact = set.type == SetType::CONE || set.type == SetType::CYLINDER;
     const bool point = !(set.parameter > 0.0);
@@ -155,13 +155,13 @@ double PrimalDualIteration::complementarity() const
 
 void PrimalDualIteration::spectralShift(const ConvexProblem& problem)
 {
-  bases_.assign(static_cast<std::size_t>(problem.W->blocks()), SquareMatrix<3>::Identity());
+  bases_.assign(static_cast<size_t>(problem.W->blocks()), SquareMatrix<3>::Identity());
   shift_.setZero(problem.W->rows());
   constexpr double HALF_ROOT = 0.70710678118654752440;
   for (const Cone& cone : cones_)
   {
     const LorentzSpectrum spectrum = inverseSquareSpectrum(cone.scaling);
-    SquareMatrix<3>& basis = bases_[static_cast<std::size_t>(cone.block)];
+    SquareMatrix<3>& basis = bases_[static_cast<size_t>(cone.block)];
     const int first = problem.W->offset(cone.block);
     const double x = spectrum.direction[0];
     const double y = spectrum.direction[1];
@@ -205,7 +205,7 @@ bool PrimalDualIteration::factor(const ConvexProblem& problem)
     for (int i = 0; i < problem.W->blocks(); ++i)
       for (int k = 0; k < problem.W->dimension(i); ++k)
         shift_[problem.W->offset(i) + k] +=
-            regularisation / problem.step_lengths[i] * bases_[static_cast<std::size_t>(i)].col(k).squaredNorm();
+            regularisation / problem.step_lengths[i] * bases_[static_cast<size_t>(i)].col(k).squaredNorm();
     if (factor_.factor(bases_, shift_))
       return true;
     regularisation = std::max(100.0 * regularisation, 1e-14);

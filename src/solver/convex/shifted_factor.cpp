@@ -16,14 +16,14 @@ using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor>;
 /// Multiplications of the sparse factorization, from the column counts along the elimination tree (Liu 1990).
 double sparseFactorCost(const Columns& permuted)
 {
-  const auto n = static_cast<std::size_t>(permuted.cols());
+  const auto n = static_cast<size_t>(permuted.cols());
   std::vector<int> parent(n, -1), mark(n, -1);
   std::vector<double> count(n, 1.0);
   for (int j = 0; j < static_cast<int>(n); ++j)
   {
-    mark[static_cast<std::size_t>(j)] = j;
+    mark[static_cast<size_t>(j)] = j;
     for (Columns::InnerIterator it(permuted, j); it && it.index() < j; ++it)
-      for (auto i = static_cast<std::size_t>(it.index()); mark[i] != j; i = static_cast<std::size_t>(parent[i]))
+      for (auto i = static_cast<size_t>(it.index()); mark[i] != j; i = static_cast<size_t>(parent[i]))
       {
         if (parent[i] < 0)
           parent[i] = j;
@@ -40,10 +40,10 @@ double sparseFactorCost(const Columns& permuted)
 /// Symmetric part with full blocks: a block is stored when any of its entries or of its mirror's is.
 Columns symmetricBlocks(const DelassusOperator& W, const std::vector<int>& offsets)
 {
-  std::vector<int> block_of(static_cast<std::size_t>(W.rows()));
+  std::vector<int> block_of(static_cast<size_t>(W.rows()));
   for (int i = 0; i < W.blocks(); ++i)
-    std::fill(block_of.begin() + offsets[static_cast<std::size_t>(i)],
-              block_of.begin() + offsets[static_cast<std::size_t>(i) + 1], i);
+    std::fill(block_of.begin() + offsets[static_cast<size_t>(i)],
+              block_of.begin() + offsets[static_cast<size_t>(i) + 1], i);
   const SparseRows rows = W.toSparse();
   std::vector<Eigen::Triplet<double>> entries;
   const auto addZeros = [&](int i, int j)
@@ -55,7 +55,7 @@ Columns symmetricBlocks(const DelassusOperator& W, const std::vector<int>& offse
         entries.emplace_back(b, a, 0.0);
       }
   };
-  std::vector<int> last(static_cast<std::size_t>(W.blocks()), -1);
+  std::vector<int> last(static_cast<size_t>(W.blocks()), -1);
   for (int i = 0; i < W.blocks(); ++i)
   {
     addZeros(i, i);
@@ -64,10 +64,10 @@ Columns symmetricBlocks(const DelassusOperator& W, const std::vector<int>& offse
       {
         entries.emplace_back(row, static_cast<int>(it.col()), 0.5 * it.value());
         entries.emplace_back(static_cast<int>(it.col()), row, 0.5 * it.value());
-        const int j = block_of[static_cast<std::size_t>(it.col())];
-        if (last[static_cast<std::size_t>(j)] != i)
+        const int j = block_of[static_cast<size_t>(it.col())];
+        if (last[static_cast<size_t>(j)] != i)
           addZeros(i, j);
-        last[static_cast<std::size_t>(j)] = i;
+        last[static_cast<size_t>(j)] = i;
       }
   }
   Columns result(W.rows(), W.rows());
@@ -96,11 +96,11 @@ struct ShiftedFactor::Sparse
 void ShiftedFactor::Sparse::collectBlocks(const std::vector<int>& offsets)
 {
   blocks.clear();
-  diagonal.resize(static_cast<std::size_t>(matrix.cols()));
+  diagonal.resize(static_cast<size_t>(matrix.cols()));
   for (int j = 0; j + 1 < static_cast<int>(offsets.size()); ++j)
   {
-    const int first = offsets[static_cast<std::size_t>(j)];
-    const int columns = offsets[static_cast<std::size_t>(j) + 1] - first;
+    const int first = offsets[static_cast<size_t>(j)];
+    const int columns = offsets[static_cast<size_t>(j) + 1] - first;
     for (int k = matrix.outerIndexPtr()[first]; k < matrix.outerIndexPtr()[first + 1];)
     {
       const int row = matrix.innerIndexPtr()[k];
@@ -108,9 +108,9 @@ void ShiftedFactor::Sparse::collectBlocks(const std::vector<int>& offsets)
       const int stride = matrix.outerIndexPtr()[first + 1] - matrix.outerIndexPtr()[first];
       if (i == j)
         for (int c = 0; c < columns; ++c)
-          diagonal[static_cast<std::size_t>(first + c)] = k + c * (stride + 1);
+          diagonal[static_cast<size_t>(first + c)] = k + c * (stride + 1);
       blocks.push_back({i, j, k, stride});
-      k += offsets[static_cast<std::size_t>(i) + 1] - offsets[static_cast<std::size_t>(i)];
+      k += offsets[static_cast<size_t>(i) + 1] - offsets[static_cast<size_t>(i)];
     }
   }
 }
@@ -153,9 +153,9 @@ void ShiftedFactor::setSparse(const DelassusOperator& W)
 
 void ShiftedFactor::setOperator(const DelassusOperator& W)
 {
-  offsets_.resize(static_cast<std::size_t>(W.blocks()) + 1);
+  offsets_.resize(static_cast<size_t>(W.blocks()) + 1);
   for (int i = 0; i <= W.blocks(); ++i)
-    offsets_[static_cast<std::size_t>(i)] = W.offset(i);
+    offsets_[static_cast<size_t>(i)] = W.offset(i);
   if (!W.isDense())
     setSparse(W);
   is_dense_ = W.isDense() || !sparse_->analysed;
@@ -166,7 +166,7 @@ void ShiftedFactor::setOperator(const DelassusOperator& W)
 void ShiftedFactor::transformDense(const std::vector<SquareMatrix<3>>& bases)
 {
   shifted_ = operator_;
-  for (std::size_t i = 0; i < bases.size(); ++i)
+  for (size_t i = 0; i < bases.size(); ++i)
   {
     const int d = offsets_[i + 1] - offsets_[i];
     for (Eigen::Index row = 0; row < shifted_.rows(); ++row)
@@ -181,7 +181,7 @@ void ShiftedFactor::transformDense(const std::vector<SquareMatrix<3>>& bases)
   }
   // Rows of a column-major matrix, column by column.
   for (Eigen::Index j = 0; j < shifted_.cols(); ++j)
-    for (std::size_t i = 0; i < bases.size(); ++i)
+    for (size_t i = 0; i < bases.size(); ++i)
     {
       double* x = &shifted_(offsets_[i], j);
       if (offsets_[i + 1] - offsets_[i] == 3)
@@ -199,8 +199,8 @@ void ShiftedFactor::transformSparse(const std::vector<SquareMatrix<3>>& bases)
   double* values = sparse_->shifted.valuePtr();
   for (const Sparse::Place& block : sparse_->blocks)
   {
-    const auto i = static_cast<std::size_t>(block.i);
-    const auto j = static_cast<std::size_t>(block.j);
+    const auto i = static_cast<size_t>(block.i);
+    const auto j = static_cast<size_t>(block.j);
     const int rows = offsets_[i + 1] - offsets_[i];
     const int columns = offsets_[j + 1] - offsets_[j];
     // The columns of a block hold the same rows: they are equally far apart.
@@ -219,7 +219,7 @@ bool ShiftedFactor::factorShifted(const Eigen::VectorXd& shift)
     return dense_factor_.info() == Eigen::Success;
   }
   for (Eigen::Index row = 0; row < shift.size(); ++row)
-    sparse_->shifted.valuePtr()[sparse_->diagonal[static_cast<std::size_t>(row)]] += shift[row];
+    sparse_->shifted.valuePtr()[sparse_->diagonal[static_cast<size_t>(row)]] += shift[row];
   sparse_->factor.factorize(sparse_->shifted);
   return sparse_->factor.info() == Eigen::Success;
 }
@@ -246,7 +246,7 @@ bool ShiftedFactor::factor(const std::vector<SquareMatrix<3>>& bases, const Eige
 
 void ShiftedFactor::toBasis(Eigen::VectorXd& x, bool transposed) const
 {
-  for (std::size_t i = 0; i < bases_.size(); ++i)
+  for (size_t i = 0; i < bases_.size(); ++i)
   {
     const int d = offsets_[i + 1] - offsets_[i];
     Vector<3> value = Vector<3>::Zero();

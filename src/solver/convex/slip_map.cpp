@@ -49,7 +49,7 @@ void SlipMap::setProblem(const DelassusProblem& problem, const Eigen::VectorXd& 
   problem_ = &problem;
   makeConeProblem(problem, step_lengths, convex_);
   contacts_.clear();
-  for (std::size_t i = 0; i < problem.laws.size(); ++i)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
     if (problem.laws[i].isCoulomb() && problem.laws[i].coefficient > 0.0)
       contacts_.push_back(static_cast<int>(i));
   value_.setZero(size());
@@ -76,7 +76,7 @@ ConvexResult SlipMap::evaluate(const Eigen::VectorXd& s, const ConvexBudget& bud
   for (int k = 0; k < size(); ++k)
   {
     const int row = problem_->W.offset(contact(k));
-    convex_.c[row] = problem_->q[row] + problem_->laws[static_cast<std::size_t>(contact(k))].coefficient * s[k];
+    convex_.c[row] = problem_->q[row] + problem_->laws[static_cast<size_t>(contact(k))].coefficient * s[k];
   }
   const ConvexResult result = inner_->solve(convex_, budget, r_, shifted_);
   u_ = shifted_ - convex_.c + problem_->q;

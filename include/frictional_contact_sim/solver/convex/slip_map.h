@@ -47,7 +47,7 @@ public:
 
   int size() const { return static_cast<int>(contacts_.size()); }
   /** @brief Law index of entry k of s. */
-  int contact(int k) const { return contacts_[static_cast<std::size_t>(k)]; }
+  int contact(int k) const { return contacts_[static_cast<size_t>(k)]; }
   const Eigen::VectorXd& value() const { return value_; }
   const Eigen::VectorXd& r() const { return r_; }
   /** @brief W r + q, without the shift E s. */
