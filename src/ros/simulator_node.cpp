@@ -63,6 +63,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   simulator_.setFailurePolicy(parameters.on_failure);
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
   setServoGains();
+  simulator_.setStart();  // a reset keeps the gains
   advertiseServices(private_node);
   subscribeCommands(private_node);
   ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "

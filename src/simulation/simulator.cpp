@@ -69,8 +69,7 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
 {
   solver->setStopping(scenario.stopping);
   applyState();
-  start = state;
-  start_outcome = outcome;
+  setStart();
 }
 
 Simulator::Simulator(const Scenario& scenario) : Simulator(loadWorldModel(scenario))
@@ -172,6 +171,17 @@ const StepOutcome& Simulator::reset()
   impl_->bookEnergies();
   impl_->outcome = impl_->start_outcome;
   return impl_->outcome;
+}
+
+void Simulator::Impl::setStart()
+{
+  start = state;
+  start_outcome = outcome;
+}
+
+void Simulator::setStart()
+{
+  impl_->setStart();
 }
 
 void Simulator::resetTime()

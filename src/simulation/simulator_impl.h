@@ -34,6 +34,7 @@ struct Simulator::Impl
   int countIslands();
 
   void applyState();
+  void setStart();
   void impactSolve();
   void restartLedger();
   void bookEnergies();

@@ -1,6 +1,10 @@
 // run_scenario --dump from outside: the problems of chosen steps as FCLib files.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
 #include "command.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/solver/registry.h"
@@ -81,5 +85,58 @@ TEST_F(RunScenarioDumpTest, OptionsWithoutAFolderAreRefused)
   EXPECT_NE(run("--dump-every 5", 2).find("--dump"), std::string::npos);
   EXPECT_NE(run("--dump-local", 2).find("--dump"), std::string::npos);
   EXPECT_NE(run("--dump /proc/nowhere", 2).find("/proc/nowhere"), std::string::npos);
+}
+class RunScenarioStateTest : public testing::Test
+{
+protected:
+  RunScenarioStateTest()
+    : folder_((fs::temp_directory_path() / ("run_scenario_state_" + std::to_string(getpid()))).string())
+  {
+    fs::create_directories(folder_);
+  }
+  ~RunScenarioStateTest() override { fs::remove_all(folder_); }
+  CommandResult run(const std::string& scenario, const std::string& arguments) const
+  {
+    return runTool("run_scenario",
+                   std::string(PROJECT_DIR) + "/config/scenarios/" + scenario + ".yaml --json " + arguments);
+  }
+  static std::string hashOf(const CommandResult& result)
+  {
+    return nlohmann::json::parse(result.output).at("state_hash").dump();
+  }
+  std::string folder_;
+};
+
+TEST_F(RunScenarioStateTest, ASecondSavedAndASecondMoreInANewProcessAreTwoSecondsToTheBit)
+{
+  const std::string file = folder_ + "/state";
+  for (const std::string scenario : {"quadruped", "grasp", "bouncing_ball"})
+  {
+    const CommandResult whole = run(scenario, "--duration 2");
+    ASSERT_EQ(run(scenario, "--duration 1 --save-state " + file).code, 0);
+    const CommandResult half = run(scenario, "--duration 1 --load-state " + file);
+    ASSERT_EQ(half.code, whole.code) << half.errors;
+    EXPECT_EQ(hashOf(half), hashOf(whole)) << scenario;
+  }
+}
+
+TEST_F(RunScenarioStateTest, WrongStateFilesAreBadInputInOneLine)
+{
+  const std::string file = folder_ + "/state";
+  ASSERT_EQ(run("grasp", "--duration 0.1 --save-state " + file).code, 0);
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const auto refused = [&](const std::string& scenario, const std::string& path, const std::string& reason)
+  {
+    const CommandResult result = run(scenario, "--load-state " + path);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
+  };
+  refused("quadruped", file, "number of bodies is 2, expected 1");
+  refused("grasp", folder_ + "/none", "none");
+  std::ofstream(folder_ + "/cut", std::ios::binary) << bytes.substr(0, bytes.size() - 1);
+  refused("grasp", folder_ + "/cut", "cut: has ");
+  EXPECT_EQ(run("grasp", "--duration 0.1 --save-state " + folder_ + "/no/such/state").code, 2);
 }
 }  // namespace

@@ -50,6 +50,8 @@ public:
   /** @brief The scenario's start again, commands and wrenches too; time and step count go on; the ledger starts anew.
    */
   const StepOutcome& reset();
+  /** @brief From now on a reset goes back to the present bodies, rows and ledger (commands given before the first step). */
+  void setStart();
   /** @brief Time back to zero; the scenario's clock, which wrench windows see, is not touched. */
   void resetTime();
   /** @brief From now on. @throws std::invalid_argument unless finite and > 0 */
