@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -52,6 +53,8 @@ int main(int argc, char** argv)
   {
     const int steps = argc > 2 ? std::stoi(argv[2]) : 500;
     const std::shared_ptr<const fcs::WorldModel> world = fcs::loadWorldModel(fcs::loadScenarioFile(argv[1]));
+    if (world->bodies.empty())
+      throw std::invalid_argument(std::string(argv[1]) + " has no bodies");
     std::vector<std::string> lines(SIMULATIONS);
     std::atomic<int> next{0};
     std::vector<std::thread> threads;
@@ -60,7 +63,7 @@ int main(int argc, char** argv)
           [&]
           {
             for (int number = next++; number < SIMULATIONS; number = next++)
-              lines[number] = simulate(world, number, steps);
+              lines[number] = simulate(world, number, steps);  // nothing is thrown: the push is finite, the link exists
           });
     for (std::thread& thread : threads)
       thread.join();

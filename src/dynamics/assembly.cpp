@@ -149,6 +149,8 @@ int StepAssembly::assembleDynamics(const StepContext& context, const Solution& g
 
 void StepAssembly::clear()
 {
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->clear();
   sink_.clear(velocities_);
   sink_.copyTo(false, problem_);
   problem_.f.setZero(velocities_);

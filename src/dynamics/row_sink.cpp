@@ -1,5 +1,7 @@
 #include "frictional_contact_sim/dynamics/row_sink.h"
 
+#include <cassert>
+
 namespace frictional_contact_sim
 {
 void RowSink::clear(int velocities)
@@ -38,6 +40,7 @@ void RowSink::endBilateral(double b, const RowRecord& record)
 
 void RowSink::copyTo(bool impact, IncrementalProblem& problem) const
 {
+  assert(rowCount(laws_) == rows());
   h_.copyTo(columns(), problem.H);
   g_.copyTo(columns(), problem.G);
   problem.w = Eigen::Map<const Eigen::VectorXd>(w_.data(), static_cast<Eigen::Index>(w_.size()));

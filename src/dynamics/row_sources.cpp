@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/dynamics/row_sources.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "frictional_contact_sim/dynamics/contact_rows.h"
@@ -11,6 +12,11 @@
 
 namespace frictional_contact_sim
 {
+namespace
+{
+constexpr size_t MOST_MEMORIES = 32;  ///< sources hold references to theirs, so the list never grows beyond this
+}  // namespace
+
 JointMemory::JointMemory(const char* name, int impulses_a_joint, const std::vector<Body>& bodies, RowMemory& memory)
   : memory_(memory), width_(impulses_a_joint)
 {
@@ -30,13 +36,20 @@ std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies
   std::unique_ptr<CreepRows> creep;
   if (pairs.hasCreep())
     creep = std::make_unique<CreepRows>(bodies, world);
-  state.memory.resize(4);
+  state.memory.clear();
+  state.memory.reserve(MOST_MEMORIES);
+  const auto memory = [&state]() -> RowMemory&
+  {
+    if (state.memory.size() == MOST_MEMORIES)
+      throw std::logic_error("row_sources.cpp: MOST_MEMORIES kinds of rows keep impulses already");
+    return state.memory.emplace_back();
+  };
   std::vector<std::unique_ptr<RowSource>> sources;
   sources.push_back(std::make_unique<ContactRows>(bodies, world, pairs, state.contacts, creep.get()));
-  sources.push_back(std::make_unique<LimitRows>(bodies, state.memory[0]));
-  sources.push_back(std::make_unique<DryFrictionRows>(bodies, state.memory[1]));
-  sources.push_back(std::make_unique<ServoRows>(bodies, state.memory[2]));
-  sources.push_back(std::make_unique<MimicRows>(bodies, state.memory[3]));
+  sources.push_back(std::make_unique<LimitRows>(bodies, memory()));
+  sources.push_back(std::make_unique<DryFrictionRows>(bodies, memory()));
+  sources.push_back(std::make_unique<ServoRows>(bodies, memory()));
+  sources.push_back(std::make_unique<MimicRows>(bodies, memory()));
   // Last: tangents are looked at once everything else of the step is settled.
   if (creep)
     sources.push_back(std::move(creep));

@@ -33,6 +33,15 @@ double ServoRows::effort(const Servo& servo, double velocity, double dt)
   return (servo.impulse.offset - servo.impulse.stiffness * velocity) / dt;
 }
 
+void ServoRows::clear()
+{
+  for (Servo& servo : servos_)
+  {
+    servo.impulse = {};
+    servo.bounded = false;
+  }
+}
+
 void ServoRows::begin(const StepContext& context)
 {
   for (Servo& servo : servos_)

@@ -68,7 +68,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   subscribeCommands(private_node);
   ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
-  outcome_ = judge("impact at the start");
+  if (judge("impact at the start") == Outcome::FAILED)
+    outcome_ = Outcome::FAILED;
 }
 
 /** @brief ~servo_gains for the servos that hold the initial position. */
@@ -180,7 +181,8 @@ void SimulatorNode::setPaused(bool paused)
 void SimulatorNode::reset()
 {
   simulator_.reset();
-  outcome_ = judge("impact at the start");
+  if (judge("impact at the start") == Outcome::FAILED)
+    outcome_ = Outcome::FAILED;
 }
 
 void SimulatorNode::resetTime()
@@ -234,6 +236,9 @@ void SimulatorNode::reportFailure(const std::string& where)
                           << (outcome.message.empty() ? "" : ", " + outcome.message)
                           << (outcome.fclib_file.empty() ? "" : ", problem in " + outcome.fclib_file)
                           << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
+    if (!outcome.fclib_file.empty() && ++dumps_ == parameters_.max_dumps)
+      ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir
+                                     << ", no more are written");
   }
 }
 

@@ -100,13 +100,8 @@ int Simulator::Impl::countIslands()
 
 void Simulator::Impl::dumpProblem(const std::string& when)
 {
-  if (dump_folder.empty())
+  if (dump_folder.empty() || dumps_left == 0)
     return;
-  if (dumps_left == 0)
-  {
-    outcome.fclib_file = "not written: this run has written as many as it may";
-    return;
-  }
   --dumps_left;
   if (dump_name.empty())
     dump_name = uniquePrefix(dump_folder + "/" + scenario.name);

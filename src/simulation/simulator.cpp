@@ -54,6 +54,29 @@ bool sameShape(const SimulationState& a, const SimulationState& b)
          std::equal(a.rows.memory.begin(), a.rows.memory.end(), b.rows.memory.begin(), b.rows.memory.end(),
                     same_memory);
 }
+
+/** What the sizes do not say of a state from outside. */
+void checkNumbers(const Simulator& simulator, const SimulationState& state)
+{
+  if (!(state.dt > 0.0) || !std::isfinite(state.dt) || !std::isfinite(state.time()))
+    throw StateError("dt or the time is not a finite number > 0");
+  for (size_t b = 0; b < state.bodies.size(); ++b)
+  {
+    const BodyState& body = state.bodies[b];
+    if (!body.q.allFinite() || !body.v.allFinite() || !body.base_pose.matrix().allFinite())
+      throw StateError("the position or velocity of body " + std::to_string(b) + " is not finite");
+    const int frames = static_cast<int>(simulator.model(static_cast<int>(b)).frames.size());
+    for (const ExternalWrench& wrench : body.wrenches)
+      if (wrench.frame < 0 || wrench.frame >= frames)
+        throw StateError("wrench.frame is " + std::to_string(wrench.frame) + ", expected 0 to " +
+                         std::to_string(frames - 1));
+  }
+  for (const ContactState& contact : state.rows.contacts)
+    for (const int shape : {contact.shape_a, contact.shape_b})
+      if (shape < 0 || shape >= simulator.shapeCount())
+        throw StateError("a contact's shape is " + std::to_string(shape) + ", expected 0 to " +
+                         std::to_string(simulator.shapeCount() - 1));
+}
 }  // namespace
 
 Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
@@ -92,6 +115,7 @@ void Simulator::Impl::applyState()
     for (JointDrive& drive : body.drives)
       drive.effort = 0.0;
   updateEnds();
+  restartReport();
   restartLedger();
   impactSolve();
 }
@@ -123,9 +147,29 @@ void Simulator::Impl::restartLedger()
   state.energy_start = state.energy.kinetic + state.energy.potential;
 }
 
+/** Nothing is thrown; where the impact has no finite answer, velocities stay as they are. */
 void Simulator::Impl::impactSolve()
 {
   outcome = StepOutcome{};
+  context.impact = true;
+  try
+  {
+    solveImpact();
+  }
+  catch (const std::exception& error)
+  {
+    assembly.clear();
+    fail(SolverStatus::NUMERICAL_FAILURE, error.what());
+    storeOutcome();
+  }
+  context.impact = false;
+}
+
+void Simulator::Impl::solveImpact()
+{
+  for (const Body& body : bodies)
+    if (!body.state.q.allFinite() || !body.state.v.allFinite())
+      throw std::invalid_argument("body '" + body.model.name + "': its position or velocity is not finite");
   for (size_t b = 0; b < bodies.size(); ++b)
   {
     Body& body = bodies[b];
@@ -134,29 +178,35 @@ void Simulator::Impl::impactSolve()
     computeMassMatrix(body.model.tree, body.middle);
     collision.setPoses(static_cast<int>(b), body.middle);
   }
-  context.impact = true;
   context.points = &collision.detect(2.0 * CONTACT_GAP);
   assembly.begin(context);
   assembly.assembleRows(context);
-  if (assembly.closing())
-  {
-    assembly.makeGuess(context, guess);
-    assembly.assembleDynamics(context, guess);
-    solve();
-    if (result.status != SolverStatus::CONVERGED)
-      dumpProblem("start");
-    storeOutcome();
-    if (isMotion(result.solution))
-    {
-      assembly.setMeanVelocity(result.solution);
-      assembly.book(context, result.solution, state.energy);
-      for (Body& body : bodies)
-        body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
-      updateEnds();
-      bookEnergies();
-    }
-  }
-  context.impact = false;
+  if (!assembly.closing())
+    return;
+  assembly.makeGuess(context, guess);
+  assembly.assembleDynamics(context, guess);
+  solve();
+  if (result.status != SolverStatus::CONVERGED)
+    dumpProblem(state.step == 0 ? "start" : "set_after_step_" + std::to_string(state.step));
+  storeOutcome();
+  if (!isMotion(result.solution))
+    return;
+  assembly.setMeanVelocity(result.solution);
+  assembly.book(context, result.solution, state.energy);
+  for (Body& body : bodies)
+    body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
+  updateEnds();
+  bookEnergies();
+}
+
+/** What is reported before the next step. */
+void Simulator::Impl::restartReport()
+{
+  report = StepSummary{};
+  report.step = state.step;
+  report.time = state.time();
+  report.dt = context.dt;
+  bookEnergies();
 }
 
 const StepOutcome& Simulator::reset()
@@ -168,7 +218,7 @@ const StepOutcome& Simulator::reset()
   state.energy_start = impl_->start.energy_start;
   state.scenario_clock = StepClock{};
   impl_->updateEnds();
-  impl_->bookEnergies();
+  impl_->restartReport();
   impl_->outcome = impl_->start_outcome;
   return impl_->outcome;
 }
@@ -211,16 +261,13 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
 {
   if (!sameShape(state, impl_->state))
     throw StateError("the state's bodies or joints differ in number from the simulator's");
+  checkNumbers(*this, state);
   const double dt = impl_->state.dt;
   impl_->state = state;
   impl_->updateEnds();
-  impl_->report = StepSummary{};
-  impl_->bookEnergies();
-  impl_->report.step = state.step;
-  impl_->report.time = state.time();
-  impl_->report.dt = dt;
   if (state.dt != dt)
     setTimeStep(dt);
+  impl_->restartReport();
   impl_->outcome = StepOutcome{};
   return impl_->outcome;
 }
@@ -345,8 +392,9 @@ void Simulator::addWrench(int body, const ExternalWrench& wrench)
   const int frame = model.tree.findFrame(wrench.link);
   if (frame < 0)
     throw std::invalid_argument("body '" + model.name + "' has no link '" + wrench.link + "'");
-  if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite())
-    throw std::invalid_argument("wrench on link '" + wrench.link + "' has a component that is not finite");
+  if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite() || std::isnan(wrench.from) ||
+      std::isnan(wrench.until))
+    throw std::invalid_argument("wrench on link '" + wrench.link + "' has a number that is not finite");
   impl_->state.bodies[body].wrenches.push_back(wrench);
   impl_->state.bodies[body].wrenches.back().frame = frame;
 }
@@ -376,7 +424,10 @@ void Simulator::setDumpFolder(const std::string& folder, int most)
   impl_->dump_name.clear();
   impl_->dumps_left = most;
   if (impl_->state.step == 0 && !impl_->outcome.converged())
+  {
     impl_->dumpProblem("start");  // of the start, from before anybody could say where to
+    impl_->start_outcome.fclib_file = impl_->outcome.fclib_file;
+  }
 }
 
 const IncrementalProblem& Simulator::problem() const

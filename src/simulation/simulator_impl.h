@@ -36,6 +36,8 @@ struct Simulator::Impl
   void applyState();
   void setStart();
   void impactSolve();
+  void solveImpact();
+  void restartReport();
   void restartLedger();
   void bookEnergies();
   void updateEnds();

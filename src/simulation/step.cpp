@@ -93,7 +93,7 @@ void Simulator::Impl::solveStep()
 
 bool Simulator::Impl::isMotion(const Solution& solution)
 {
-  return solution.r.allFinite() && solution.v.allFinite() &&
+  return solution.r.allFinite() && solution.v.allFinite() && solution.u.allFinite() && solution.lambda.allFinite() &&
          (solution.v.size() == 0 || solution.v.cwiseAbs().maxCoeff() < RUNAWAY_SPEED);
 }
 
@@ -102,6 +102,10 @@ void Simulator::Impl::fail(SolverStatus status, const std::string& message)
 {
   result.status = status;
   result.message = message;
+  result.solver.clear();
+  result.tried.clear();
+  result.iterations = 0;
+  result.seconds = 0.0;
   result.residual = 1.0;
   result.law_errors.setZero(static_cast<Eigen::Index>(assembly.problem().laws.size()));
   result.solution.v.setConstant(assembly.problem().velocities(), std::numeric_limits<double>::quiet_NaN());
@@ -118,7 +122,15 @@ void Simulator::Impl::solve()
     fail(SolverStatus::NUMERICAL_FAILURE, "forces or velocities have run away");
     return;
   }
-  solver->solve(assembly.problem(), &guess, result);
+  try
+  {
+    solver->solve(assembly.problem(), &guess, result);
+  }
+  catch (const std::exception& error)
+  {
+    fail(SolverStatus::NUMERICAL_FAILURE, error.what());
+    return;
+  }
   if (!isMotion(result.solution))
   {
     result.status = SolverStatus::NUMERICAL_FAILURE;

@@ -222,13 +222,13 @@ int runAll(const Options& options)
       fcs::loadState(*simulator, options.load_state);
     runs.push_back(run(*simulator, options));
   }
-  if (!options.save_state.empty())
-    fcs::saveState(*simulator, options.save_state);
   const bool identical = std::all_of(
       runs.begin(), runs.end(), [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
   const RunSummary& median = runs[runs.size() / 2];
   std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
+  if (!options.save_state.empty())
+    fcs::saveState(*simulator, options.save_state);
   if (interrupted != 0)
     std::cerr << "run_scenario: interrupted after " << median.steps << " steps\n";
   return median.failed_steps == 0 && interrupted == 0 ? 0 : 1;

@@ -8,6 +8,7 @@
 
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/simulation/simulator.h"
+#include "frictional_contact_sim/simulation/state_archive.h"
 #include "scene.h"
 
 namespace frictional_contact_sim
@@ -56,7 +57,7 @@ TEST(StepOutcomeTest, DumpsOfARunEndAtTheirNumber)
   for (int i = 0; i < 10; ++i)
     simulator.step();
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
-  EXPECT_THAT(simulator.outcome().fclib_file, testing::HasSubstr("not written"));
+  EXPECT_EQ(simulator.outcome().fclib_file, "");
   fs::remove_all(folder);
 }
 
@@ -120,6 +121,69 @@ TEST(StepOutcomeTest, AfterAFailureTheSimulatorStillWorks)
     simulator.step();
   simulator.setState(start);
   EXPECT_TRUE(simulator.step().converged());
+}
+
+/** An impact at the singular angle: an outcome, and the next steps are steps again, with gravity. */
+TEST(StepOutcomeTest, ASetStateWithASingularMassMatrixIsAFailedOutcomeAndLaterStepsAreWhole)
+{
+  Simulator simulator(gimbalScene());
+  const SimulationState start = simulator.state();
+  const int j2 = simulator.model(0).joints[simulator.model(0).findJoint("j2")].v_index;
+  simulator.position(0)[j2] = 0.0;
+  simulator.velocity(0)[j2] = -1.0;
+  const StepOutcome* outcome = nullptr;
+  ASSERT_NO_THROW(outcome = &simulator.stateChanged());
+  EXPECT_FALSE(outcome->converged());
+  EXPECT_FALSE(outcome->message.empty());
+  simulator.setState(start);
+  Simulator fresh(gimbalScene());
+  for (int i = 0; i < 100; ++i)
+  {
+    simulator.step();
+    fresh.step();
+  }
+  EXPECT_EQ(simulator.stateHash(), fresh.stateHash());
+}
+
+TEST(StepOutcomeTest, StatesThatAreNotNumbersAreSaidAndRefused)
+{
+  Scenario scene = groundScene(0.5);
+  addBody(scene, "box", boxUrdf({0.2, 0.2, 0.2}, 1.0), poseAt(0.0, 0.0, 0.1));
+  Simulator simulator(scene);
+  for (int i = 0; i < 20; ++i)
+    simulator.step();
+  const SimulationState good = simulator.state();
+  SimulationState bad = good;
+  bad.bodies[0].v[1] = std::nan("");
+  EXPECT_THROW(simulator.setState(bad), StateError);
+  bad = good;
+  bad.dt = 0.0;
+  EXPECT_THROW(simulator.setState(bad), StateError);
+  bad = good;
+  bad.rows.contacts.front().shape_b = 99;
+  EXPECT_THROW(simulator.setState(bad), StateError);
+  EXPECT_EQ(simulator.stateHash(), hashOf(good)) << "a refused state changes nothing";
+  simulator.position(0)[2] = std::nan("");
+  EXPECT_EQ(simulator.stateChanged().status, SolverStatus::NUMERICAL_FAILURE);
+  EXPECT_THAT(simulator.outcome().message, testing::HasSubstr("box"));
+  EXPECT_TRUE(simulator.setState(good).converged());
+  EXPECT_TRUE(simulator.step().converged());
+}
+
+/** The report before the next step is of no step: nothing of the run before is left in it. */
+TEST(StepOutcomeTest, ReportsAfterAResetAreNotThoseOfTheStepBefore)
+{
+  Scenario scene = groundScene(0.5);
+  addBody(scene, "box", boxUrdf({0.2, 0.2, 0.2}, 1.0), poseAt(0.0, 0.0, 0.15));
+  Simulator simulator(scene);
+  for (int i = 0; i < 200; ++i)
+    simulator.step();
+  ASSERT_EQ(simulator.report().contacts, 4);
+  simulator.reset();
+  EXPECT_EQ(simulator.report().contacts, 0);
+  EXPECT_EQ(simulator.report().status, SolverStatus::NOT_RUN);
+  EXPECT_EQ(simulator.report().time, simulator.time());
+  EXPECT_EQ(simulator.report().step, 200u);
 }
 }  // namespace
 }  // namespace frictional_contact_sim

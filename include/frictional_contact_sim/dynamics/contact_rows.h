@@ -47,6 +47,7 @@ public:
               std::vector<ContactState>& contacts, CreepRows* creep);
 
   const char* name() const override { return "contacts"; }
+  void clear() override { rows_.clear(); }
   void begin(const StepContext& context) override;
   void addRows(const StepContext& context, RowSink& sink) override;
   void guess(const StepContext& context, Solution& guess) const override;

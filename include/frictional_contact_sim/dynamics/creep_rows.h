@@ -24,7 +24,7 @@ public:
   Again again(const StepContext& context, const Solution& solution, bool converged) override;
 
   /** @brief Forgets the contacts of the assembly before. */
-  void clear();
+  void clear() override;
   /**
    * @brief Turns a rolling contact's first tangent into the rolling direction and sets its tangent of the curve; leaves
    * one that does not roll as it is.

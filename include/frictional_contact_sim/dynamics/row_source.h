@@ -10,6 +10,7 @@
  * else to say.
  */
 #include <Eigen/Core>
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,7 @@ public:
   JointMemory(const char* name, int impulses_a_joint, const std::vector<Body>& bodies, RowMemory& memory);
   double* at(int body, int joint, int which = 0)
   {
+    assert(which < width_);
     return memory_.impulses.data() + static_cast<size_t>((first_[body] + joint) * width_ + which);
   }
 
@@ -88,6 +90,8 @@ public:
 
   /** @brief For messages. */
   virtual const char* name() const = 0;
+  /** @brief The problem could not be assembled: no rows until the next step. */
+  virtual void clear() {}
   /** @brief Once a step, before anything else; bodies stand at the midpoint. */
   virtual void begin(const StepContext&) {}
   /** @brief Rows that belong to no single joint. */

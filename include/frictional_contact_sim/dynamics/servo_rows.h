@@ -22,6 +22,7 @@ public:
   ServoRows(std::vector<Body>& bodies, RowMemory& memory);
 
   const char* name() const override { return "servos"; }
+  void clear() override;
   void begin(const StepContext& context) override;
   void addJointRows(const StepContext& context, int body, int joint, RowSink& sink) override;
   void addMomentum(const StepContext& context, int body, VectorOut momentum) override;

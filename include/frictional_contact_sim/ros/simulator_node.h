@@ -65,6 +65,7 @@ private:
   DeliveryMonitor delivery_;
   Pacer pacer_;
   Throttle failure_lines_;
+  int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
   std::vector<ros::ServiceServer> services_;
   std::vector<ros::Subscriber> subscribers_;

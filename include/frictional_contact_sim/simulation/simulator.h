@@ -50,7 +50,7 @@ public:
   /** @brief The scenario's start again, commands and wrenches too; time and step count go on; the ledger starts anew.
    */
   const StepOutcome& reset();
-  /** @brief From now on a reset goes back to the present bodies, rows and ledger (commands given before the first step). */
+  /** @brief From now on a reset goes back to the present state (with commands given before the first step, say). */
   void setStart();
   /** @brief Time back to zero; the scenario's clock, which wrench windows see, is not touched. */
   void resetTime();
@@ -58,7 +58,8 @@ public:
   void setTimeStep(double dt);
 
   const SimulationState& state() const;
-  /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays. */
+  /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays.
+   *  @throws StateError when its sizes are not this world's or a number is not finite; nothing has changed then */
   const StepOutcome& setState(const SimulationState& state);
   /** @brief Of the last step, reset, load or set; at the start that of its impact solve. */
   const StepOutcome& outcome() const;

@@ -80,7 +80,7 @@ public:
   }
 
 private:
-  static constexpr std::uint64_t MOST_ITEMS = 10000000;
+  static constexpr std::uint64_t MOST_ITEMS = 1000000;
 };
 
 }  // namespace frictional_contact_sim
