@@ -236,10 +236,9 @@ void SimulatorNode::reportFailure(const std::string& where)
                           << (outcome.message.empty() ? "" : ", " + outcome.message)
                           << (outcome.fclib_file.empty() ? "" : ", problem in " + outcome.fclib_file)
                           << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
-    if (!outcome.fclib_file.empty() && ++dumps_ == parameters_.max_dumps)
-      ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir
-                                     << ", no more are written");
   }
+  if (!outcome.fclib_file.empty() && ++dumps_ == parameters_.max_dumps)
+    ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir << ", no more are written");
 }
 
 /** @brief What the policy makes of the last step, reset or set. @param where of the line that is logged */
