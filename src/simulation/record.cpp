@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
-#include <numeric>
 
 #include "frictional_contact_sim/problem/fclib.h"
 #include "simulator_impl.h"
@@ -78,23 +77,17 @@ void Simulator::Impl::storeReport()
 /** Connected components of bodies through contacts with a nonempty row. */
 int Simulator::Impl::countIslands()
 {
-  std::iota(island_of.begin(), island_of.end(), 0);
-  const auto root = [this](int body)
-  {
-    while (island_of[body] != body)
-      body = island_of[body] = island_of[island_of[body]];
-    return body;
-  };
+  island_of.reset(static_cast<int>(bodies.size()));
   for (const ContactState& contact : state.rows.contacts)
   {
     const int a = collision.shape(contact.shape_a).body;
     const int b = collision.shape(contact.shape_b).body;
     if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
-      island_of[root(a)] = root(b);
+      island_of.unite(a, b);
   }
   int islands = 0;
-  for (size_t b = 0; b < island_of.size(); ++b)
-    islands += bodies[b].model.tree.nv > 0 && root(static_cast<int>(b)) == static_cast<int>(b);
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
+    islands += bodies[b].model.tree.nv > 0 && island_of.root(b) == b;
   return islands;
 }
 

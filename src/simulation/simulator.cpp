@@ -7,7 +7,6 @@
 #include "frictional_contact_sim/dynamics/row_sources.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
-#include "frictional_contact_sim/simulation/state_archive.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "simulator_impl.h"
 
@@ -44,39 +43,6 @@ std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
   return bodies;
 }
 
-bool sameShape(const SimulationState& a, const SimulationState& b)
-{
-  const auto same_body = [](const BodyState& x, const BodyState& y)
-  { return x.q.size() == y.q.size() && x.v.size() == y.v.size() && x.drives.size() == y.drives.size(); };
-  const auto same_memory = [](const RowMemory& x, const RowMemory& y)
-  { return x.name == y.name && x.impulses.size() == y.impulses.size(); };
-  return std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same_body) &&
-         std::equal(a.rows.memory.begin(), a.rows.memory.end(), b.rows.memory.begin(), b.rows.memory.end(),
-                    same_memory);
-}
-
-/** What the sizes do not say of a state from outside. */
-void checkNumbers(const Simulator& simulator, const SimulationState& state)
-{
-  if (!(state.dt > 0.0) || !std::isfinite(state.dt) || !std::isfinite(state.time()))
-    throw StateError("dt or the time is not a finite number > 0");
-  for (size_t b = 0; b < state.bodies.size(); ++b)
-  {
-    const BodyState& body = state.bodies[b];
-    if (!body.q.allFinite() || !body.v.allFinite() || !body.base_pose.matrix().allFinite())
-      throw StateError("the position or velocity of body " + std::to_string(b) + " is not finite");
-    const int frames = static_cast<int>(simulator.model(static_cast<int>(b)).frames.size());
-    for (const ExternalWrench& wrench : body.wrenches)
-      if (wrench.frame < 0 || wrench.frame >= frames)
-        throw StateError("wrench.frame is " + std::to_string(wrench.frame) + ", expected 0 to " +
-                         std::to_string(frames - 1));
-  }
-  for (const ContactState& contact : state.rows.contacts)
-    for (const int shape : {contact.shape_a, contact.shape_b})
-      if (shape < 0 || shape >= simulator.shapeCount())
-        throw StateError("a contact's shape is " + std::to_string(shape) + ", expected 0 to " +
-                         std::to_string(simulator.shapeCount() - 1));
-}
 }  // namespace
 
 Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
@@ -88,7 +54,6 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , context(makeContext(scenario))
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows), state.rows)
   , solver(createSolver(scenario.solver))
-  , island_of(bodies.size())
 {
   solver->setStopping(scenario.stopping);
   applyState();
@@ -104,21 +69,6 @@ Simulator::Simulator(std::shared_ptr<const WorldModel> world) : impl_(std::make_
 }
 
 Simulator::~Simulator() = default;
-
-/** The state as it stands in q and v becomes the state: impact solve, warm starts dropped, ledger anew. */
-void Simulator::Impl::applyState()
-{
-  state.rows.contacts.clear();
-  for (RowMemory& memory : state.rows.memory)
-    std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
-  for (BodyState& body : state.bodies)
-    for (JointDrive& drive : body.drives)
-      drive.effort = 0.0;
-  updateEnds();
-  restartReport();
-  restartLedger();
-  impactSolve();
-}
 
 void Simulator::Impl::updateEnds()
 {
@@ -145,58 +95,6 @@ void Simulator::Impl::restartLedger()
   state.energy = EnergyLedger{};
   bookEnergies();
   state.energy_start = state.energy.kinetic + state.energy.potential;
-}
-
-/** Nothing is thrown; where the impact has no finite answer, velocities stay as they are. */
-void Simulator::Impl::impactSolve()
-{
-  outcome = StepOutcome{};
-  context.impact = true;
-  try
-  {
-    solveImpact();
-  }
-  catch (const std::exception& error)
-  {
-    assembly.clear();
-    fail(SolverStatus::NUMERICAL_FAILURE, error.what());
-    storeOutcome();
-  }
-  context.impact = false;
-}
-
-void Simulator::Impl::solveImpact()
-{
-  for (const Body& body : bodies)
-    if (!body.state.q.allFinite() || !body.state.v.allFinite())
-      throw std::invalid_argument("body '" + body.model.name + "': its position or velocity is not finite");
-  for (size_t b = 0; b < bodies.size(); ++b)
-  {
-    Body& body = bodies[b];
-    body.middle.base_pose = body.state.base_pose;
-    forwardKinematics(body.model.tree, body.state.q, body.middle);
-    computeMassMatrix(body.model.tree, body.middle);
-    collision.setPoses(static_cast<int>(b), body.middle);
-  }
-  context.points = &collision.detect(2.0 * CONTACT_GAP);
-  assembly.begin(context);
-  assembly.assembleRows(context);
-  if (!assembly.closing())
-    return;
-  assembly.makeGuess(context, guess);
-  assembly.assembleDynamics(context, guess);
-  solve();
-  if (result.status != SolverStatus::CONVERGED)
-    dumpProblem(state.step == 0 ? "start" : "set_after_step_" + std::to_string(state.step));
-  storeOutcome();
-  if (!isMotion(result.solution))
-    return;
-  assembly.setMeanVelocity(result.solution);
-  assembly.book(context, result.solution, state.energy);
-  for (Body& body : bodies)
-    body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
-  updateEnds();
-  bookEnergies();
 }
 
 /** What is reported before the next step. */
@@ -255,27 +153,6 @@ void Simulator::setTimeStep(double dt)
 const SimulationState& Simulator::state() const
 {
   return impl_->state;
-}
-
-const StepOutcome& Simulator::setState(const SimulationState& state)
-{
-  if (!sameShape(state, impl_->state))
-    throw StateError("the state's bodies or joints differ in number from the simulator's");
-  checkNumbers(*this, state);
-  const double dt = impl_->state.dt;
-  impl_->state = state;
-  impl_->updateEnds();
-  if (state.dt != dt)
-    setTimeStep(dt);
-  impl_->restartReport();
-  impl_->outcome = StepOutcome{};
-  return impl_->outcome;
-}
-
-const StepOutcome& Simulator::stateChanged()
-{
-  impl_->applyState();
-  return impl_->outcome;
 }
 
 const StepOutcome& Simulator::outcome() const

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
+#include "frictional_contact_sim/math/union_find.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state.h"
 #include "frictional_contact_sim/simulation/world_model.h"
@@ -61,7 +62,7 @@ struct Simulator::Impl
   SolverResult result;
   StepOutcome outcome;
   StepSummary report;
-  std::vector<int> island_of;
+  UnionFind island_of;
 };
 
 }  // namespace frictional_contact_sim

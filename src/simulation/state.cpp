@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "fnv1a.h"
 #include "frictional_contact_sim/simulation/state_archive.h"
 
 namespace frictional_contact_sim
@@ -81,24 +82,18 @@ public:
   {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
-    add(bits);
+    hash_.add(bits);
   }
-  void integer(const std::string&, std::uint64_t& value) override { add(value); }
+  void integer(const std::string&, std::uint64_t& value) override { hash_.add(value); }
   void text(const std::string&, std::string& value) override
   {
     for (const char letter : value)
-      add(static_cast<unsigned char>(letter));
+      hash_.add(std::uint64_t{static_cast<unsigned char>(letter)});
   }
-  std::uint64_t value() const { return state_; }
+  std::uint64_t value() const { return hash_.value(); }
 
 private:
-  void add(std::uint64_t bits)
-  {
-    for (int byte = 0; byte < 8; ++byte)
-      state_ = (state_ ^ ((bits >> (8 * byte)) & 0xffU)) * 1099511628211ULL;
-  }
-
-  std::uint64_t state_ = 14695981039346656037ULL;
+  Fnv1a hash_;
 };
 
 /** Every entry as text: its name and its bits. */

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "fnv1a.h"
 #include "frictional_contact_sim/simulation/state_archive.h"
 
 namespace frictional_contact_sim
@@ -34,10 +35,10 @@ std::uint64_t parse(const std::string& bytes, size_t at, int width)
 
 std::uint64_t checksum(const std::string& bytes)
 {
-  std::uint64_t hash = 14695981039346656037ULL;
+  Fnv1a hash;
   for (const char byte : bytes)
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-  return hash;
+    hash.add(static_cast<unsigned char>(byte));
+  return hash.value();
 }
 
 class Writer : public StateArchive
