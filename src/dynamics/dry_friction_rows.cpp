@@ -15,7 +15,7 @@ void DryFrictionRows::addJointRows(const StepContext& context, int body_index, i
     return;
   sink.push(body.v_offset + joint.v_index, 1.0);
   sink.endRow(0.0, {WorkAccount::JOINTS, 0.0, memory_.at(body_index, joint_index)});
-  sink.endLaw({LawType::DRY_FRICTION, context.dt * joint.dry_friction});
+  sink.endLaw({LawType::DRY_FRICTION, context.dt * joint.dry_friction}, jointUnit(body, joint_index));
 }
 
 }  // namespace frictional_contact_sim

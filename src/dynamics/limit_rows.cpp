@@ -32,7 +32,7 @@ void LimitRows::addJointRows(const StepContext& context, int body_index, int joi
       sink.noteClosing();
     sink.push(body.v_offset + joint.v_index, sign);
     sink.endRow(shift.shift, {WorkAccount::JOINTS, 0.0, memory_.at(body_index, joint_index, side)});
-    sink.endLaw({LawType::UNILATERAL, 0.0});
+    sink.endLaw({LawType::UNILATERAL, 0.0}, jointUnit(body, joint_index));
   }
 }
 

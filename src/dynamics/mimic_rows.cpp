@@ -32,7 +32,7 @@ void MimicRows::addJointRows(const StepContext& context, int body_index, int joi
       body.q_middle[joint.q_index] - joint.mimic.multiplier * body.q_middle[followed.q_index] - joint.mimic.offset;
   const double b = error / context.dt;
   violation_ = std::max(violation_, std::abs(b) * context.dt);
-  sink.endBilateral(b, {WorkAccount::JOINTS, 0.0, memory_.at(body_index, joint_index)});
+  sink.endBilateral(b, {WorkAccount::JOINTS, 0.0, memory_.at(body_index, joint_index)}, jointUnit(body, joint_index));
 }
 
 }  // namespace frictional_contact_sim

@@ -13,6 +13,8 @@ void RowSink::clear(int velocities)
   w_.clear();
   b_.clear();
   laws_.clear();
+  units_.clear();
+  bilateral_units_.clear();
   auxiliary_mass_.clear();
   row_records_.clear();
   bilateral_records_.clear();
@@ -25,14 +27,21 @@ void RowSink::endRow(double w, const RowRecord& record)
   row_records_.push_back(record);
 }
 
+void RowSink::endLaw(const Law& law, const RowUnit& unit)
+{
+  laws_.push_back(law);
+  units_.push_back(unit);
+}
+
 int RowSink::addAuxiliary(double mass)
 {
   auxiliary_mass_.push_back(mass);
   return columns() - 1;
 }
 
-void RowSink::endBilateral(double b, const RowRecord& record)
+void RowSink::endBilateral(double b, const RowRecord& record, const RowUnit& unit)
 {
+  bilateral_units_.push_back(unit);
   g_.endRow();
   b_.push_back(b);
   bilateral_records_.push_back(record);

@@ -65,7 +65,8 @@ void ServoRows::addJointRows(const StepContext& context, int body, int joint, Ro
   sink.push(bodies_[body].v_offset + servo.v_index, 1.0);
   sink.push(sink.addAuxiliary(servo.impulse.stiffness), -1.0);
   sink.endRow(-servo.impulse.offset / servo.impulse.stiffness, {WorkAccount::ACTUATORS, 0.0, memory_.at(body, joint)});
-  sink.endLaw({LawType::DRY_FRICTION, context.dt * bodies_[body].state.drives[joint].effort_limit});
+  sink.endLaw({LawType::DRY_FRICTION, context.dt * bodies_[body].state.drives[joint].effort_limit},
+              {VelocityUnit::SLACK, jointUnit(bodies_[body], joint).reach});
 }
 
 void ServoRows::addMomentum(const StepContext&, int body, VectorOut momentum)

@@ -137,6 +137,7 @@ void DelassusReduction::multiplyPairs()
 void DelassusReduction::compute(const IncrementalProblem& problem, OperatorKind kind)
 {
   local_.laws = problem.laws;
+  local_.scales = problem.scales;
   const bool new_tree = factor_.compute(problem.M);
   if (new_tree || kind != kind_ || !samePattern(problem))
   {
@@ -147,11 +148,11 @@ void DelassusReduction::compute(const IncrementalProblem& problem, OperatorKind 
   factor_.halfSolve(problem.f, half_force_);
   multiplyHalfRows(half_force_, local_.q);
   local_.q = problem.w - local_.q;
-  free_velocity_ = local_.q.size() == 0 ? 0.0 : local_.q.lpNorm<Eigen::Infinity>();
   base_ = -half_force_;
   rank_ = 0;
   if (!loop_of_.empty())
   {
+    free_velocity_ = local_.q;
     factor_.transposedHalfSolve(half_force_, mass_inverse_force_);
     unconstrained_.assignHalf(problem.laws, pattern_begin_, pattern_, half_rows_, problem.velocities());
     computeStepLengths(unconstrained_, step_lengths_);

@@ -281,6 +281,13 @@ FclibProblem readFclib(const std::string& path)
     readGlobal(path, shape, result);
   else
     readLocal(path, shape, result);
+  if (shape.kind == FclibKind::GLOBAL)
+  {
+    result.global.scales = readScales(path, LAW_SCALES, result.contacts);
+    result.global.bilateral_scales = readScales(path, BILATERAL_SCALES, shape.bilaterals);
+  }
+  else if (shape.bilaterals == 0)
+    result.local.scales = readScales(path, LAW_SCALES, result.contacts);
   if (shape.has_solution)
     result.solution = readSolutionGroup(path, "/solution", shape);
   for (int k = 1; k <= shape.guesses; ++k)
@@ -310,6 +317,7 @@ void writeFclib(const std::string& path, const IncrementalProblem& problem, cons
               [&](const std::string& temporary)
               {
                 return fclib_write_global(&stored, temporary.c_str()) == 1 &&
+                       writeScales(temporary, encoded.problem.scales, encoded.problem.bilateral_scales) &&
                        writeSolution(temporary, solution == nullptr ? nullptr : &encoded.solution);
               });
 }
@@ -335,6 +343,7 @@ void writeFclib(const std::string& path, const DelassusProblem& problem, const F
               [&](const std::string& temporary)
               {
                 return fclib_write_local(&stored, temporary.c_str()) == 1 &&
+                       writeScales(temporary, encoded.scales, {}) &&
                        writeSolution(temporary, solution == nullptr ? nullptr : &encoded.solution);
               });
 }

@@ -296,4 +296,53 @@ Solution readSolutionGroup(const std::string& path, const std::string& group, co
   return solution;
 }
 
+std::vector<LawScale> readScales(const std::string& path, const char* dataset, int count)
+{
+  const Checker checker(path);
+  if (!checker.exists(dataset))
+    return {};
+  checker.checkReals(dataset, SCALE_NUMBERS * count);
+  const std::vector<double> values = checker.readReals(dataset);
+  std::vector<LawScale> scales(static_cast<size_t>(count));
+  for (size_t i = 0; i < scales.size(); ++i)
+  {
+    const double* number = values.data() + SCALE_NUMBERS * i;
+    if ((number[0] != 0.0 && number[0] != 1.0 && number[0] != 2.0) || !(number[1] > 0.0) || number[2] < 0.0 ||
+        number[3] < 0.0)
+      checker.fail(std::string(dataset) + " row " + std::to_string(i) + " is " + std::to_string(number[0]) + ", " +
+                       std::to_string(number[1]) + ", " + std::to_string(number[2]) + ", " + std::to_string(number[3]),
+                   "a unit 0, 1 or 2, a reach > 0, speeds >= 0");
+    scales[i] = {static_cast<VelocityUnit>(static_cast<int>(number[0])), number[1], number[2], number[3]};
+  }
+  return scales;
+}
+
+namespace
+{
+bool writeTable(hid_t file, const char* name, const std::vector<LawScale>& scales)
+{
+  if (scales.empty())
+    return true;
+  std::vector<double> numbers;
+  for (const LawScale& scale : scales)
+    numbers.insert(numbers.end(), {static_cast<double>(scale.unit), scale.reach, scale.speed_change, scale.speed});
+  const hsize_t size[2] = {scales.size(), SCALE_NUMBERS};
+  const H5Handle space(H5Screate_simple(2, size, nullptr), H5Sclose);
+  const H5Handle dataset(H5Dcreate2(file, name, H5T_NATIVE_DOUBLE, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Dclose);
+  return dataset.valid() &&
+         H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) >= 0;
+}
+}  // namespace
+
+bool writeScales(const std::string& path, const std::vector<LawScale>& laws, const std::vector<LawScale>& bilaterals)
+{
+  if (laws.empty() && bilaterals.empty())
+    return true;
+  const H5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  const H5Handle group(H5Gcreate2(file.id(), SCALES_GROUP, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  return group.valid() && writeTable(file.id(), LAW_SCALES, laws) &&
+         writeTable(file.id(), BILATERAL_SCALES, bilaterals);
+}
+
 }  // namespace frictional_contact_sim

@@ -67,4 +67,17 @@ FclibShape checkFclib(const std::string& path);
 /** @brief Reads the vectors of a solution group of a checked file; missing ones stay empty. */
 Solution readSolutionGroup(const std::string& path, const std::string& group, const FclibShape& shape);
 
+/// Where scales stand in a file, beside FCLib's own groups; readers that do not know them skip them.
+constexpr const char* SCALES_GROUP = "/frictional_contact_sim";
+constexpr const char* LAW_SCALES = "/frictional_contact_sim/law_scales";
+constexpr const char* BILATERAL_SCALES = "/frictional_contact_sim/bilateral_scales";
+/// Numbers of a scale: unit (0 length, 1 angle, 2 slack), reach, speed change, speed.
+constexpr int SCALE_NUMBERS = 4;
+
+/** @brief Reads scales of a checked file; empty where there are none. @throws std::runtime_error in one line. */
+std::vector<LawScale> readScales(const std::string& path, const char* dataset, int count);
+
+/** @brief Adds scales to a file; false when it cannot. Nothing is written of none. */
+bool writeScales(const std::string& path, const std::vector<LawScale>& laws, const std::vector<LawScale>& bilaterals);
+
 }  // namespace frictional_contact_sim

@@ -58,6 +58,19 @@ RowMap mapRows(const std::vector<Law>& laws)
   return map;
 }
 
+/** Scales of the encoded contacts and of the bilateral laws, none where the original has none. */
+void encodeScales(const std::vector<Law>& laws, const std::vector<LawScale>& scales, std::vector<LawScale>& contacts,
+                  std::vector<LawScale>& bilaterals)
+{
+  for (size_t i = 0; i < scales.size(); ++i)
+  {
+    (laws[i].type == LawType::BILATERAL ? bilaterals : contacts).push_back(scales[i]);
+    // The normal row of an encoded threshold is a velocity of its own: nothing else may be measured with it.
+    if (laws[i].type == LawType::DRY_FRICTION)
+      contacts.back().unit = VelocityUnit::SLACK;
+  }
+}
+
 SparseRows build(int rows, int columns, const Triplets& triplets)
 {
   SparseRows matrix(rows, columns);
@@ -127,6 +140,10 @@ EncodedGlobal encodeGlobal(const IncrementalProblem& problem, const Solution* so
     for (SparseRows::InnerIterator entry(problem.H, row); entry; ++entry)
       (contact ? H : G).emplace_back(target, static_cast<int>(entry.col()), entry.value());
   }
+  result.bilateral_scales = problem.bilateral_scales;
+  if (result.bilateral_scales.empty() && !problem.scales.empty())
+    result.bilateral_scales.resize(static_cast<size_t>(bilaterals));
+  encodeScales(problem.laws, problem.scales, result.scales, result.bilateral_scales);
   result.M = build(velocities + map.extra, velocities + map.extra, M);
   result.H = build(map.rows, velocities + map.extra, H);
   result.G = build(bilaterals + map.bilaterals, velocities + map.extra, G);
@@ -173,6 +190,10 @@ EncodedLocal encodeLocal(const DelassusProblem& problem, const Solution* solutio
     W.emplace_back(map.extra_row[k], map.extra_row[k], weight);
     encoded.q[map.extra_row[k]] = -weight * map.threshold[k];
   }
+  std::vector<LawScale> bilateral;
+  encodeScales(problem.laws, problem.scales, encoded.scales, bilateral);
+  if (!bilateral.empty())
+    encoded.scales.clear();  // s has no place for them
   encoded.W = build(map.rows, map.rows, W);
   encoded.V = build(map.rows, map.bilaterals, V);
   encoded.R = build(map.bilaterals, map.bilaterals, R);

@@ -22,6 +22,7 @@ struct EncodedLocal
 {
   SparseRows W, V, R;
   Eigen::VectorXd q, s;
+  std::vector<LawScale> scales;  ///< of the contacts
   std::vector<double> friction;
   int dimension = 3;
   EncodedSolution solution;

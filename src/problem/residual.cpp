@@ -19,6 +19,55 @@ double blockEigenvalue(const DelassusOperator& W, int block)
     return largestEigenvalue(W.diagonalBlock<2>(block));
   return std::abs(W.diagonalBlock<1>(block)(0, 0));
 }
+
+/** Of a bare problem: what is lost in forming u = H v + w. */
+void setRoundOff(const IncrementalProblem& problem, const Eigen::VectorXd& v, Eigen::VectorXd& round_off)
+{
+  int row = 0;
+  for (size_t i = 0; i < problem.laws.size(); ++i)
+  {
+    double largest = 0.0;
+    for (const int end = row + problem.laws[i].dimension(); row < end; ++row)
+    {
+      largest = std::max(largest, std::abs(problem.w[row]));
+      for (SparseRows::InnerIterator entry(problem.H, row); entry; ++entry)
+        largest = std::max(largest, std::abs(entry.value() * v[entry.col()]));
+    }
+    round_off[static_cast<Eigen::Index>(i)] =
+        ResidualMetric::ROUND_OFF * std::numeric_limits<double>::epsilon() * largest;
+  }
+}
+
+/** |G v + b| of a row relative to the largest term of all of them and to what the row is scaled with. */
+double bilateralResidual(const IncrementalProblem& problem, const Eigen::VectorXd& mass_inverse_force,
+                         const Eigen::VectorXd& v)
+{
+  double largest = std::max(maxAbs(problem.b), VELOCITY_FLOOR);
+  for (int row = 0; row < problem.bilaterals(); ++row)
+    for (SparseRows::InnerIterator entry(problem.G, row); entry; ++entry)
+      largest = std::max({largest, std::abs(entry.value() * v[entry.col()]),
+                          std::abs(entry.value() * mass_inverse_force[entry.col()])});
+  double worst = 0.0;
+  for (int row = 0; row < problem.bilaterals(); ++row)
+  {
+    double sum = problem.b[row];
+    for (SparseRows::InnerIterator entry(problem.G, row); entry; ++entry)
+      sum += entry.value() * v[entry.col()];
+    double error = std::abs(sum);
+    double scale = largest;
+    if (!problem.bilateral_scales.empty())
+    {
+      const LawScale& given = problem.bilateral_scales[static_cast<size_t>(row)];
+      scale = std::max(scale, given.speed_change / given.reach);
+      if (error <= ResidualMetric::ROUND_OFF * std::numeric_limits<double>::epsilon() * given.speed / given.reach)
+        error = 0.0;
+    }
+    error /= scale;
+    if (!(error <= worst) && !std::isnan(worst))
+      worst = error;
+  }
+  return worst;
+}
 }  // namespace
 
 void computeStepLengths(const DelassusProblem& problem, Eigen::VectorXd& step_lengths)
@@ -43,58 +92,55 @@ void computeStepLengths(const DelassusOperator& W, Eigen::VectorXd& step_lengths
       step_lengths[i] = largest > 0.0 ? 1.0 / largest : 1.0;
 }
 
-LawErrors measureLaws(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                      const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off)
+double lawResidual(const std::vector<Law>& laws, const ResidualMetric& metric, const Eigen::VectorXd& u,
+                   const Eigen::VectorXd& r, Eigen::VectorXd* errors, Eigen::VectorXd* residuals)
 {
-  if (errors != nullptr)
-    errors->resize(static_cast<Eigen::Index>(laws.size()));
-  LawErrors found;
+  for (Eigen::VectorXd* values : {errors, residuals})
+    if (values != nullptr)
+      values->resize(static_cast<Eigen::Index>(laws.size()));
+  double worst = 0.0;
   int row = 0;
   for (size_t i = 0; i < laws.size(); ++i)
   {
     const auto index = static_cast<Eigen::Index>(i);
     const int dimension = laws[i].dimension();
-    const double step_length = step_lengths[index];
+    const double step_length = metric.step_lengths[index];
     const double raw = naturalMapError(laws[i], u.data() + row, r.data() + row, step_length);
-    const double error = raw <= round_off ? 0.0 : raw;
+    double error = raw <= metric.round_off[index] ? 0.0 : raw;
     if (errors != nullptr)
       (*errors)[index] = error;
-    // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
-    if (!(error <= found.worst) && !std::isnan(found.worst))
-      found.worst = error;
     double square = 0.0;
     for (int k = row; k < row + dimension; ++k)
       square += r[k] * r[k];
     if (square > 0.0)
-      found.impulse = std::max(found.impulse, std::sqrt(square) / step_length);
+      error = std::max(error, std::numeric_limits<double>::epsilon() * std::sqrt(square) / step_length);
+    error /= metric.scales[index];
+    if (residuals != nullptr)
+      (*residuals)[index] = error;
+    // Written so that a NaN becomes the worst error instead of disappearing in a comparison.
+    if (!(error <= worst) && !std::isnan(worst))
+      worst = error;
     row += dimension;
   }
-  found.velocity = std::max({free_velocity, maxAbs(u), VELOCITY_FLOOR});
-  return found;
+  return worst;
 }
 
-double LawErrors::residual(double impulse_cap) const
+ResidualMetric makeMetric(const DelassusProblem& problem)
 {
-  double error = worst;
-  // r - P(r - rho u) is exactly zero once u is below the round-off of r/rho: that confirms nothing.
-  if (impulse > impulse_cap * velocity)
-    error = std::max(error, std::numeric_limits<double>::epsilon() * impulse);
-  return error / std::max(velocity, std::min(impulse, impulse_cap * velocity));
+  ResidualMetric metric;
+  Islands islands;
+  islands.find(problem.W);
+  computeStepLengths(problem, metric.step_lengths);
+  metric.setScales(problem.laws, problem.scales, problem.q, islands);
+  return metric;
 }
 
-double lawResidual(const std::vector<Law>& laws, const Eigen::VectorXd& step_lengths, double free_velocity,
-                   const Eigen::VectorXd& u, const Eigen::VectorXd& r, Eigen::VectorXd* errors, double round_off,
-                   double impulse_cap)
-{
-  return measureLaws(laws, step_lengths, free_velocity, u, r, errors, round_off).residual(impulse_cap);
-}
-
-double localResidual(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,
+double localResidual(const DelassusProblem& problem, const ResidualMetric& metric, const Eigen::VectorXd& r,
                      Eigen::VectorXd& u)
 {
   problem.W.apply(r, u);
   u += problem.q;
-  return lawResidual(problem.laws, step_lengths, maxAbs(problem.q), u, r);
+  return lawResidual(problem.laws, metric, u, r);
 }
 
 double GlobalResidual::value() const
@@ -106,15 +152,23 @@ double GlobalResidual::value() const
   return worst;
 }
 
+void setMetric(const IncrementalProblem& problem, const DelassusReduction& reduction, const Islands& islands,
+               GlobalResidualData& data)
+{
+  data.metric.step_lengths = reduction.stepLengths();
+  data.metric.setScales(problem.laws, problem.scales, reduction.freeVelocity(), islands);
+  data.mass_inverse_force = reduction.massInverseForce();
+}
+
 GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualData& data, Solution& solution)
 {
   GlobalResidual residual;
   solution.u.resize(problem.rows());
   solution.u.noalias() = problem.H * solution.v;
   solution.u += problem.w;
-  const double round_off = 8.0 * std::numeric_limits<double>::epsilon() * maxAbs(solution.v);
-  residual.law =
-      lawResidual(problem.laws, data.step_lengths, data.free_velocity, solution.u, solution.r, nullptr, round_off);
+  if (problem.scales.empty())
+    setRoundOff(problem, solution.v, data.metric.round_off);
+  residual.law = lawResidual(problem.laws, data.metric, solution.u, solution.r);
 
   data.momentum.resize(problem.velocities());
   data.term.resize(problem.velocities());
@@ -138,39 +192,24 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
   }
   residual.dynamics = scale > 0.0 ? maxAbs(data.momentum) / scale : 0.0;
 
-  double worst = 0.0;
-  double largest = std::max(maxAbs(problem.b), VELOCITY_FLOOR);
-  for (int row = 0; row < problem.bilaterals(); ++row)
-  {
-    double sum = problem.b[row];
-    for (SparseRows::InnerIterator entry(problem.G, row); entry; ++entry)
-    {
-      sum += entry.value() * solution.v[entry.col()];
-      largest = std::max({largest, std::abs(entry.value() * solution.v[entry.col()]),
-                          std::abs(entry.value() * data.mass_inverse_force[entry.col()])});
-    }
-    if (!(std::abs(sum) <= worst) && !std::isnan(worst))
-      worst = std::abs(sum);
-  }
-  residual.bilateral = largest > 0.0 ? worst / largest : worst;
+  residual.bilateral = bilateralResidual(problem, data.mass_inverse_force, solution.v);
   return residual;
 }
 
 double evaluateResidual(const DelassusProblem& problem, const Eigen::VectorXd& r)
 {
-  Eigen::VectorXd step_lengths, u;
-  computeStepLengths(problem, step_lengths);
-  return localResidual(problem, step_lengths, r, u);
+  Eigen::VectorXd u;
+  return localResidual(problem, makeMetric(problem), r, u);
 }
 
 GlobalResidual evaluateResidual(const IncrementalProblem& problem, const Solution& solution)
 {
   DelassusReduction reduction;
   reduction.compute(problem);
+  Islands islands;
+  islands.find(reduction.problem().W);
   GlobalResidualData data;
-  data.step_lengths = reduction.stepLengths();
-  data.free_velocity = reduction.freeVelocity();
-  data.mass_inverse_force = reduction.massInverseForce();
+  setMetric(problem, reduction, islands, data);
   Solution copy = solution;
   return globalResidual(problem, data, copy);
 }

@@ -46,6 +46,26 @@ void expectLaws(const std::vector<Law>& laws)
       throw std::invalid_argument("laws[" + std::to_string(i) + "].coefficient is " +
                                   std::to_string(laws[i].coefficient) + ", expected a finite number >= 0");
 }
+
+void expectScales(const char* name, const std::vector<LawScale>& scales, size_t count)
+{
+  if (scales.empty())
+    return;
+  if (scales.size() != count)
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(scales.size()) +
+                                " entries, expected 0 or " + std::to_string(count));
+  for (size_t i = 0; i < count; ++i)
+  {
+    const LawScale& scale = scales[i];
+    const bool valid = scale.reach > 0.0 && scale.speed_change >= 0.0 && scale.speed >= 0.0 &&
+                       std::isfinite(scale.reach) && std::isfinite(scale.speed_change) && std::isfinite(scale.speed);
+    if (!valid)
+      throw std::invalid_argument(std::string(name) + "[" + std::to_string(i) + "] is reach " +
+                                  std::to_string(scale.reach) + ", speed_change " + std::to_string(scale.speed_change) +
+                                  ", speed " + std::to_string(scale.speed) +
+                                  ", expected finite numbers, reach > 0, the others >= 0");
+  }
+}
 }  // namespace
 
 void validate(const IncrementalProblem& problem)
@@ -57,6 +77,8 @@ void validate(const IncrementalProblem& problem)
   expectShape("H", problem.H, rows, velocities);
   expectShape("G", problem.G, problem.bilaterals(), velocities);
   expectSize("w", problem.w, rows);
+  expectScales("scales", problem.scales, problem.laws.size());
+  expectScales("bilateral_scales", problem.bilateral_scales, static_cast<size_t>(problem.bilaterals()));
   expectFinite("M", problem.M.valuePtr(), problem.M.nonZeros());
   expectFinite("H", problem.H.valuePtr(), problem.H.nonZeros());
   expectFinite("G", problem.G.valuePtr(), problem.G.nonZeros());
@@ -75,6 +97,7 @@ void validate(const DelassusProblem& problem)
                                 " blocks, expected " + std::to_string(rows) + " in " +
                                 std::to_string(problem.laws.size()) + " for the given laws");
   expectSize("q", problem.q, rows);
+  expectScales("scales", problem.scales, problem.laws.size());
   expectFinite("q", problem.q.data(), rows);
   expectFinite("W", W.valueData(), W.valueCount());
 }

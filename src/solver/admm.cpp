@@ -96,7 +96,7 @@ bool Admm::refactor()
 
 void Admm::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  makeConeProblem(problem, context.step_lengths, convex_);
+  makeConeProblem(problem, context.metric.step_lengths, convex_);
   fillMetric(convex_, Metric::BLOCK, metric_);
   inverse_metric_ = metric_.cwiseInverse();
   factor_.setOperator(problem.W);

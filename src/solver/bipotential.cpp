@@ -125,7 +125,7 @@ void Bipotential::doSolve(const DelassusProblem& problem, const SolveContext& co
     result.message = std::to_string(problem.W.rows()) + " rows are too many for the dense factor of bipotential";
     return;
   }
-  scaled_.set(problem, context.step_lengths, ScaledContacts::Metric::DIRECTION);
+  scaled_.set(problem, context.metric.step_lengths, ScaledContacts::Metric::DIRECTION);
   scaled_.scaleImpulse(result.solution.r, z_);
   scaled_.velocity(z_, c_);
   matrix_ = scaled_.root().asDiagonal() * problem.W.toDense() * scaled_.root().asDiagonal();

@@ -64,7 +64,7 @@ void CadouxBroyden::doSolve(const DelassusProblem& problem, const SolveContext& 
 {
   left_.clear();
   right_.clear();
-  map_.setProblem(problem, context.step_lengths);
+  map_.setProblem(problem, context);
   map_.setGuess(result.solution.r);
   Eigen::VectorXd s = map_.value();
   OuterLoop loop(context, result, options_.stall_window);

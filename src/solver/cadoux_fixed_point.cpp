@@ -33,7 +33,7 @@ CadouxFixedPoint::CadouxFixedPoint(const CadouxOptions& options, std::unique_ptr
 
 void CadouxFixedPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  map_.setProblem(problem, context.step_lengths);
+  map_.setProblem(problem, context);
   map_.setGuess(result.solution.r);
   s_ = map_.value();
   if (options_.initial_slip == InitialSlip::ZERO)

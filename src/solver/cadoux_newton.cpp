@@ -160,7 +160,7 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, const SolveContext& c
                      std::to_string(options_.max_rows);
     return;
   }
-  map_.setProblem(problem, context.step_lengths);
+  map_.setProblem(problem, context);
   map_.setGuess(result.solution.r);
   s_ = map_.value();
   if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))

@@ -143,7 +143,7 @@ void FbBfgs::remember()
 
 void FbBfgs::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, context.step_lengths);
+  system_.set(problem, context.metric.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   moves_.resize(system_.rows(), options_.memory);

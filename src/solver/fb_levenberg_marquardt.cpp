@@ -60,7 +60,7 @@ bool FbLevenbergMarquardt::tryStep(double lambda, double& merit, double& gain)
 
 void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, context.step_lengths);
+  system_.set(problem, context.metric.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   contacts.velocity(z_, c_);

@@ -114,7 +114,7 @@ bool FbNewtonSmoothed::nextSmoothing(double largest, double root_rows, double& m
 
 void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  system_.set(problem, context.step_lengths);
+  system_.set(problem, context.metric.step_lengths);
   ScaledContacts& contacts = system_.contacts();
   contacts.scaleImpulse(result.solution.r, z_);
   start_ = z_;

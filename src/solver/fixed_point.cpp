@@ -60,7 +60,7 @@ void FixedPoint::advance(double theta)
 
 void FixedPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  scaled_.set(problem, context.step_lengths, metric_);
+  scaled_.set(problem, context.metric.step_lengths, metric_);
   scaled_.scaleImpulse(result.solution.r, z_);
   double theta = options_.first_step;
   OuterLoop loop(context, result);

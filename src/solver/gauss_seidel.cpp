@@ -92,7 +92,7 @@ void GaussSeidel::extrapolate(const DelassusProblem& problem, const SolveContext
   {
     const int row = problem.W.offset(i);
     const int d = problem.W.dimension(i);
-    square += (r.segment(row, d) - previous_.segment(row, d)).squaredNorm() / context.step_lengths[i];
+    square += (r.segment(row, d) - previous_.segment(row, d)).squaredNorm() / context.metric.step_lengths[i];
   }
   const double beta = previous_square_ > 0.0 ? square / previous_square_ : 0.0;
   previous_square_ = square;

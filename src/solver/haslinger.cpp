@@ -44,7 +44,7 @@ void Haslinger::doSolve(const DelassusProblem& problem, const SolveContext& cont
                                       [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
   r_ = result.solution.r;
   thresholds_.setZero(problem.W.blocks());
-  makeCylinderProblem(problem, context.step_lengths, thresholds_, convex_);
+  makeCylinderProblem(problem, context.metric.step_lengths, thresholds_, convex_);
   updateThresholds(problem, 1.0);
   projectOntoSets(convex_, r_);
   problem.W.apply(r_, u_);
@@ -57,8 +57,7 @@ void Haslinger::doSolve(const DelassusProblem& problem, const SolveContext& cont
   budget.interrupted = [&context] { return context.timeIsUp(); };
   while (!loop.outOfBudget("outer iterations exhausted"))
   {
-    budget.tolerance = loop.innerTolerance(options_.inner_accuracy, frictional) *
-                       velocityScale(problem.q, u_, r_, context.step_lengths, problem.W);
+    budget.tolerance = loop.innerTolerance(options_.inner_accuracy, frictional) * context.smallestScale();
     inner_->solve(convex_, budget, r_, u_);
     ++result.iterations;
     const double before = value;

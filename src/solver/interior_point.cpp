@@ -46,7 +46,7 @@ void InteriorPoint::updateSlip(const DelassusProblem& problem)
 bool InteriorPoint::run(const DelassusProblem& problem, const SolveContext& context, double shift, double slip_centring,
                         OuterLoop& loop, SolverResult& result)
 {
-  const double mean_step = std::exp(context.step_lengths.array().log().mean());
+  const double mean_step = std::exp(context.metric.step_lengths.array().log().mean());
   problem.W.apply(guess_, u_);
   u_ += problem.q;
   updateSlip(problem);
@@ -65,7 +65,7 @@ bool InteriorPoint::run(const DelassusProblem& problem, const SolveContext& cont
       return true;
     if (frictional_)
     {
-      const double error = value * velocityScale(problem.q, u_, iteration_.r(), context.step_lengths, problem.W);
+      const double error = value * context.smallestScale();
       centring = slip_centring * mean_step * error * error;
     }
     updateSlip(problem);
@@ -75,7 +75,7 @@ bool InteriorPoint::run(const DelassusProblem& problem, const SolveContext& cont
 
 void InteriorPoint::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  makeConeProblem(problem, context.step_lengths, convex_);
+  makeConeProblem(problem, context.metric.step_lengths, convex_);
   frictional_ = std::any_of(problem.laws.begin(), problem.laws.end(),
                             [](const Law& law) { return law.isCoulomb() && law.coefficient > 0.0; });
   guess_ = result.solution.r;
@@ -88,7 +88,7 @@ void InteriorPoint::doSolve(const DelassusProblem& problem, const SolveContext& 
     return;
   double shift = std::numeric_limits<double>::infinity();
   if (options_.warm_shift > 0.0 && !guess_.isZero(0.0))
-    shift = options_.warm_shift * first * velocityScale(problem.q, u_, guess_, context.step_lengths, problem.W);
+    shift = options_.warm_shift * first * context.smallestScale();
   double slip_centring = options_.slip_centring;
   for (int attempt = 0; attempt <= options_.restarts; ++attempt)
   {

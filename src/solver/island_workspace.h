@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "frictional_contact_sim/solver/islands.h"
+#include "frictional_contact_sim/problem/islands.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -21,7 +21,7 @@ struct IslandSlot
   size_t blocks = 0;
   long last_used = 0;
   DelassusProblem problem;
-  Eigen::VectorXd step_lengths;
+  ResidualMetric metric;
   SolverResult result;
   std::unique_ptr<Solver> method;  ///< a sibling of the solver; nullptr: the solver itself
 };
@@ -36,14 +36,10 @@ struct IslandWorkspace
 
   /** @brief The slot of this shape, or one to be used for it. */
   IslandSlot& slot(int rows, size_t blocks);
-  /** @brief Copies the island's laws, q, step lengths and r to its slot; those given are of the whole. */
-  IslandSlot& gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& step_lengths,
-                     const Eigen::VectorXd& r);
-  /** @brief Largest |q| of the island, at least a small share of the whole's [m/s]. */
-  double scale(const DelassusProblem& whole, double whole_free_velocity) const;
-  /** @brief Whether the guess is good enough for the island, from the errors and impulses of its laws alone. */
-  bool alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& step_lengths, const Eigen::VectorXd& r,
-                     double error, double impulse) const;
+  /** @brief Copies the island's laws, q, metric and r to its slot; those given are of the whole. */
+  IslandSlot& gather(const DelassusProblem& whole, int rows, const ResidualMetric& metric, const Eigen::VectorXd& r);
+  /** @brief Whether the guess is good enough for the island: E of its laws alone. */
+  bool alreadySolved(double tolerance) const;
   /** @brief Writes the slot's impulses to r. */
   void scatter(const DelassusProblem& whole, const IslandSlot& slot, Eigen::VectorXd& r) const;
 
@@ -53,7 +49,7 @@ struct IslandWorkspace
   std::vector<IslandSlot> slots;
   long clock = 0;
   Eigen::VectorXd velocity;  ///< u of the guess
-  Eigen::VectorXd errors;  ///< of the laws at the guess [m/s]
+  Eigen::VectorXd residuals;  ///< E of the laws at the guess
 };
 
 }  // namespace frictional_contact_sim

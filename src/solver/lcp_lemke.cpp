@@ -229,7 +229,7 @@ void LcpLemke::doSolve(const DelassusProblem& problem, const SolveContext& conte
     return;
   }
   angles_.setZero(problem.W.blocks());
-  const Eigen::VectorXd scale = context.step_lengths.cwiseSqrt();
+  const Eigen::VectorXd scale = context.metric.step_lengths.cwiseSqrt();
   LcpOptions pivoting = options_.pivoting;
   pivoting.interrupted = [&context] { return context.timeIsUp(); };
   OuterLoop loop(context, result, options_.alignments + 2);

@@ -84,7 +84,7 @@ void SemismoothNewton::prepare(const DelassusProblem& problem, const SolveContex
   position_.resize(static_cast<size_t>(rows));
   for (int i = 0; i < count; ++i)
   {
-    const double rho = context.step_lengths[i];
+    const double rho = context.metric.step_lengths[i];
     directionLengths(problem.W, i, rho, rho_normal_[i], rho_tangential_[i]);
     weight_.segment(problem.W.offset(i), problem.W.dimension(i)).setConstant(1.0 / rho);
   }

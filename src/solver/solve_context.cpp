@@ -11,7 +11,7 @@ double SolveContext::seconds() const
 
 double SolveContext::residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const
 {
-  return lawResidual(problem.laws, step_lengths, free_velocity, u, r, nullptr, 0.0, IMPULSE_CAP);
+  return lawResidual(problem.laws, metric, u, r);
 }
 
 }  // namespace frictional_contact_sim

@@ -10,10 +10,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// An island's own |q| counts in its scale, but not less than this share of the whole's: what is asked of a quiet
-/// island stays above round-off of the whole.
-constexpr double QUIET_SHARE = 1e-3;
-
 /// The more severe, the larger: what the whole reports of its islands.
 int severity(SolverStatus status)
 {
@@ -62,10 +58,10 @@ void merge(int first_law, const SolverResult& island, SolverResult& whole)
   }
 }
 
-SolveContext islandContext(const SolveContext& whole, const IslandSlot& slot, double scale, double deadline)
+SolveContext islandContext(const SolveContext& whole, const IslandSlot& slot, double deadline)
 {
-  return {slot.step_lengths, scale,    whole.tolerance, whole.max_iterations,   whole.cold_start,
-          whole.start,       deadline, whole.history,   whole.notedIterations()};
+  return {slot.metric, whole.tolerance, whole.max_iterations, whole.cold_start,
+          whole.start, deadline,        whole.history,        whole.notedIterations()};
 }
 }  // namespace
 
@@ -97,7 +93,7 @@ IslandSlot& IslandWorkspace::slot(int rows, size_t blocks)
   return slot;
 }
 
-IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, const Eigen::VectorXd& step_lengths,
+IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, const ResidualMetric& metric,
                                     const Eigen::VectorXd& r)
 {
   IslandSlot& slot = this->slot(rows, laws.size());
@@ -105,7 +101,8 @@ IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, cons
   part.laws.resize(laws.size());
   part.q.resize(rows);
   slot.result.solution.r.resize(rows);
-  slot.step_lengths.resize(static_cast<Eigen::Index>(laws.size()));
+  for (Eigen::VectorXd* values : {&slot.metric.step_lengths, &slot.metric.scales, &slot.metric.round_off})
+    values->resize(static_cast<Eigen::Index>(laws.size()));
   int row = 0;
   for (size_t k = 0; k < laws.size(); ++k)
   {
@@ -113,7 +110,10 @@ IslandSlot& IslandWorkspace::gather(const DelassusProblem& whole, int rows, cons
     part.laws[k] = whole.laws[static_cast<size_t>(laws[k])];
     part.q.segment(row, dimension) = whole.q.segment(first, dimension);
     slot.result.solution.r.segment(row, dimension) = r.segment(first, dimension);
-    slot.step_lengths[static_cast<Eigen::Index>(k)] = step_lengths[laws[k]];
+    const auto index = static_cast<Eigen::Index>(k);
+    slot.metric.step_lengths[index] = metric.step_lengths[laws[k]];
+    slot.metric.scales[index] = metric.scales[laws[k]];
+    slot.metric.round_off[index] = metric.round_off[laws[k]];
     row += dimension;
   }
   return slot;
@@ -130,27 +130,12 @@ void IslandWorkspace::scatter(const DelassusProblem& whole, const IslandSlot& sl
   }
 }
 
-double IslandWorkspace::scale(const DelassusProblem& whole, double whole_free_velocity) const
+bool IslandWorkspace::alreadySolved(double tolerance) const
 {
-  double largest = QUIET_SHARE * whole_free_velocity;
+  // Written so that a NaN is no answer.
   for (const int i : laws)
-    for (int row = whole.W.offset(i); row < whole.W.offset(i + 1); ++row)
-      largest = std::max(largest, std::abs(whole.q[row]));
-  return largest;
-}
-
-bool IslandWorkspace::alreadySolved(const DelassusProblem& whole, const Eigen::VectorXd& step_lengths,
-                                    const Eigen::VectorXd& r, double error, double impulse) const
-{
-  for (const int i : laws)
-  {
-    // Written so that a NaN is no answer.
-    if (!(errors[i] <= error))
+    if (!(residuals[i] <= tolerance))
       return false;
-    for (int row = whole.W.offset(i); row < whole.W.offset(i + 1); ++row)
-      if (!(std::abs(r[row]) <= impulse * step_lengths[i]))
-        return false;
-  }
   return true;
 }
 
@@ -171,7 +156,7 @@ void Solver::solveIsland(const DelassusProblem& whole, const SolveContext& conte
   {
     // As if the island were alone: the start of the whole may be scaled by what others need.
     if (context.cold_start)
-      result.residual = method.solveAtOnce(slot.problem, context, result).criterion;
+      result.residual = method.solveAtOnce(slot.problem, context, result);
     method.doSolve(slot.problem, context, result);
   }
   catch (const std::bad_alloc&)
@@ -193,8 +178,7 @@ void Solver::solveIslands(const DelassusProblem& problem, const SolveContext& co
   // with a warm start costs one product.
   problem.W.apply(result.solution.r, work.velocity);
   work.velocity += problem.q;
-  measureLaws(problem.laws, context.step_lengths, context.free_velocity, work.velocity, result.solution.r,
-              &work.errors);
+  lawResidual(problem.laws, context.metric, work.velocity, result.solution.r, nullptr, &work.residuals);
   work.position.assign(problem.laws.size(), -1);
   int rows_left = problem.W.rows();
   result.status = SolverStatus::CONVERGED;
@@ -204,16 +188,14 @@ void Solver::solveIslands(const DelassusProblem& problem, const SolveContext& co
     const int rows = work.islands.rows(k);
     const int rows_before = rows_left;
     rows_left -= rows;
-    const double scale = work.scale(problem, context.free_velocity);
-    if (work.alreadySolved(problem, context.step_lengths, result.solution.r, context.tolerance * scale,
-                           SolveContext::IMPULSE_CAP * scale))
+    if (work.alreadySolved(context.tolerance))
       continue;
-    IslandSlot& slot = work.gather(problem, rows, context.step_lengths, result.solution.r);
+    IslandSlot& slot = work.gather(problem, rows, context.metric, result.solution.r);
     clear(slot.result);
     // A time limit is shared by rows, what one island leaves goes to the later ones: a hard one does not starve them.
     const double now = context.deadline > 0.0 ? context.seconds() : 0.0;
     const double share = std::max(context.deadline - now, 0.0) * rows / rows_before;
-    solveIsland(problem, islandContext(context, slot, scale, context.deadline > 0.0 ? now + share : 0.0), slot);
+    solveIsland(problem, islandContext(context, slot, context.deadline > 0.0 ? now + share : 0.0), slot);
     work.scatter(problem, slot, result.solution.r);
     merge(work.laws.front(), slot.result, result);
   }

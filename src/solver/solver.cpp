@@ -16,16 +16,20 @@ namespace
 /// Attempts to get the global residual below the tolerance when the local one was and its own was not.
 constexpr int REFINEMENTS = 3;
 
-/** A bound on max_i |e_i| at r = 0, u = q [m/s]; the projections involved do not lengthen. */
-double restingError(const DelassusProblem& problem)
+/** A bound on E at r = 0, u = q; the projections involved do not lengthen. */
+double restingResidual(const DelassusProblem& problem, const ResidualMetric& metric)
 {
   double worst = 0.0;
   int row = 0;
-  for (const Law& law : problem.laws)
+  for (size_t i = 0; i < problem.laws.size(); ++i)
   {
+    const Law& law = problem.laws[i];
     const double velocity = problem.q[row];
     const bool one_sided = law.isCoulomb() || law.type == LawType::UNILATERAL;
-    worst = std::max(worst, one_sided ? -velocity : std::abs(velocity));
+    const double error = one_sided ? -velocity : std::abs(velocity);
+    const auto index = static_cast<Eigen::Index>(i);
+    if (error > metric.round_off[index])
+      worst = std::max(worst, error / metric.scales[index]);
     row += law.dimension();
   }
   return worst;
@@ -110,7 +114,7 @@ bool Solver::start(int, const DelassusProblem&, Eigen::VectorXd&, Eigen::VectorX
 /** What a solve starts from; the clock runs. */
 SolveContext Solver::begin(SolverResult& result)
 {
-  SolveContext context{step_lengths_};
+  SolveContext context{metric_};
   context.start = std::chrono::steady_clock::now();
   context.deadline = stopping_.time_limit;
   context.tolerance = stopping_.tolerance;
@@ -120,55 +124,46 @@ SolveContext Solver::begin(SolverResult& result)
   return context;
 }
 
-Solver::Verdict Solver::measure(const DelassusProblem& problem, const SolveContext& context, const Solution& solution)
-{
-  const LawErrors errors =
-      measureLaws(problem.laws, context.step_lengths, context.free_velocity, solution.u, solution.r);
-  return {errors.residual(), errors.residual(SolveContext::IMPULSE_CAP)};
-}
-
-/** Cold starts that already solve the problem; the verdict on the last one tells whether it does. */
-Solver::Verdict Solver::solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+/** Cold starts that may solve the problem already; returns E of the last one. */
+double Solver::solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   Solution& solution = result.solution;
   solution.r.setZero(problem.W.rows());
   // Without impulses e_i depends on q alone: a scene where everything parts costs no product with W.
-  const double at_rest = restingError(problem) / std::max(context.free_velocity, VELOCITY_FLOOR);
-  if (at_rest <= context.tolerance)
+  double residual = restingResidual(problem, context.metric);
+  if (residual <= context.tolerance)
   {
     solution.u = problem.q;
-    return {at_rest, at_rest};
+    return residual;
   }
   if (!start(0, problem, solution.r, solution.u))
     solution.u = problem.q;
-  Verdict verdict = measure(problem, context, solution);
-  for (int attempt = 1; !verdict.within(context.tolerance) && start(attempt, problem, solution.r, solution.u);
-       ++attempt)
-    verdict = measure(problem, context, solution);
-  return verdict;
+  residual = context.residual(problem, solution.u, solution.r);
+  for (int attempt = 1; !(residual <= context.tolerance) && start(attempt, problem, solution.r, solution.u); ++attempt)
+    residual = context.residual(problem, solution.u, solution.r);
+  return residual;
 }
 
-Solver::Verdict Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context,
-                                   SolverResult& result)
+/** Islands and metric are set. Returns E of the answer. */
+double Solver::solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context,
+                          SolverResult& result)
 {
-  computeStepLengths(problem, step_lengths_);
-  context.free_velocity = maxAbs(problem.q);
   context.cold_start = guess == nullptr;
   context.iterations_before = context.notedIterations();
   // Without rows there is nothing to do, guess or not.
   if (guess == nullptr || problem.W.rows() == 0)
   {
-    const Verdict verdict = solveAtOnce(problem, context, result);
-    if (verdict.within(context.tolerance))
-      return verdict;
-    result.residual = verdict.criterion;
+    const double residual = solveAtOnce(problem, context, result);
+    if (residual <= context.tolerance)
+      return residual;
+    result.residual = residual;
   }
   else
   {
     result.solution.r = guess->r;
     result.residual = UNKNOWN_RESIDUAL;
   }
-  if (stopping_.split_islands && islands_->islands.find(problem.W) > 1)
+  if (stopping_.split_islands && islands_->islands.count() > 1)
     solveIslands(problem, context, result);
   else
     try
@@ -187,7 +182,7 @@ Solver::Verdict Solver::solveLocal(const DelassusProblem& problem, const Solutio
   }
   problem.W.apply(result.solution.r, result.solution.u);
   result.solution.u += problem.q;
-  return measure(problem, context, result.solution);
+  return context.residual(problem, result.solution.u, result.solution.r);
 }
 
 void Solver::checkOperator(bool global) const
@@ -203,24 +198,17 @@ void Solver::checkOperator(bool global) const
         "sparse");
 }
 
-void Solver::judge(const Verdict& verdict, SolverResult& result) const
+void Solver::judge(double residual, SolverResult& result) const
 {
-  const double tolerance = stopping_.tolerance;
-  result.residual = verdict.residual;
+  result.residual = residual;
   if (result.solver.empty())
     result.solver = name_;
   if (result.tried.empty())
     result.tried.push_back(name_);
-  if (verdict.within(tolerance))
+  if (residual <= stopping_.tolerance)
   {
     result.status = SolverStatus::CONVERGED;
     result.message.clear();
-  }
-  else if (verdict.residual <= tolerance)
-  {
-    if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
-      result.status = SolverStatus::STAGNATED;
-    result.message = "impulses run away: there may be no solution";
   }
   else if (result.status == SolverStatus::CONVERGED || result.status == SolverStatus::NOT_RUN)
   {
@@ -230,12 +218,10 @@ void Solver::judge(const Verdict& verdict, SolverResult& result) const
 }
 
 /** The answer as it is reported, its u given. */
-void Solver::finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict,
-                    SolverResult& result)
+void Solver::finish(const std::vector<Law>& laws, const SolveContext& context, double residual, SolverResult& result)
 {
-  judge(verdict, result);
-  measureLaws(laws, context.step_lengths, context.free_velocity, result.solution.u, result.solution.r,
-              &result.law_errors);
+  judge(residual, result);
+  lawResidual(laws, context.metric, result.solution.u, result.solution.r, &result.law_errors);
   result.seconds = context.seconds();
   if (context.history != nullptr)
     result.history.push_back({std::max(result.iterations, context.notedIterations()), result.seconds, result.residual});
@@ -260,8 +246,11 @@ void Solver::solve(const DelassusProblem& problem, const Solution* guess, Solver
     converted_.W.assign(problem.W.toSparse(), problem.laws, stopping_.operator_kind);
     used = &converted_;
   }
-  const Verdict verdict = solveLocal(*used, guess, context, result);
-  finish(problem.laws, context, verdict, result);
+  computeStepLengths(*used, metric_.step_lengths);
+  islands_->islands.find(used->W);
+  metric_.setScales(problem.laws, problem.scales, problem.q, islands_->islands);
+  const double residual = solveLocal(*used, guess, context, result);
+  finish(problem.laws, context, residual, result);
 }
 
 void Solver::solve(const IncrementalProblem& problem, const Solution* guess, SolverResult& result)
@@ -274,16 +263,18 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   checkOperator(true);
   reduction_->compute(problem, stopping_.operator_kind);
   const DelassusProblem& local = reduction_->problem();
-  global_.step_lengths = reduction_->stepLengths();
-  global_.free_velocity = reduction_->freeVelocity();
-  global_.mass_inverse_force = reduction_->massInverseForce();
+  islands_->islands.find(local.W);
+  setMetric(problem, *reduction_, islands_->islands, global_);
+  metric_ = global_.metric;
+  if (problem.bilaterals() > 0)
+    computeStepLengths(local, metric_.step_lengths);
 
   const double tolerance = stopping_.tolerance;
-  Verdict verdict = solveLocal(local, guess, context, result);
+  double residual = solveLocal(local, guess, context, result);
   reduction_->recover(problem, result.solution);
   GlobalResidual value = globalResidual(problem, global_, result.solution);
   // The global form measures with the unconstrained W_ii and with u from v: ask for a little more when that matters.
-  for (int k = 0; k < REFINEMENTS && verdict.residual <= context.tolerance && value.law > tolerance; ++k)
+  for (int k = 0; k < REFINEMENTS && residual <= context.tolerance && value.law > tolerance; ++k)
   {
     context.tolerance *= std::max(0.3 * tolerance / value.law, 0.01);
     warm_.r = result.solution.r;
@@ -291,13 +282,12 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
     result.iterations = 0;
     result.tried.clear();
     result.solver.clear();
-    verdict = solveLocal(local, &warm_, context, result);
+    residual = solveLocal(local, &warm_, context, result);
     result.iterations += iterations;
     reduction_->recover(problem, result.solution);
     value = globalResidual(problem, global_, result.solution);
   }
-  verdict.residual = value.value();
-  finish(problem.laws, context, verdict, result);
+  finish(problem.laws, context, value.value(), result);
 }
 
 SolverResult Solver::solve(const DelassusProblem& problem, const Solution* guess)

@@ -88,7 +88,7 @@ void SweptNewton::adapt(bool sufficient)
 void SweptNewton::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   prepare(problem, context);
-  rho_normal_ = rho_tangential_ = context.step_lengths;
+  rho_normal_ = rho_tangential_ = context.metric.step_lengths;
   Eigen::VectorXd& r = result.solution.r;
   problem.W.apply(r, u_);
   u_ += problem.q;

@@ -155,7 +155,10 @@ TEST(ResidualTest, IsZeroWithoutRowsAndNotANumberIsNeverSmall)
   u << std::numeric_limits<double>::quiet_NaN(), 1.0;
   r << 1.0, 1.0;
   const std::vector<Law> laws(2, Law{LawType::UNILATERAL, 0.0});
-  EXPECT_FALSE(lawResidual(laws, Eigen::Vector2d(1.0, 1.0), 1.0, u, r) <= 1e30);
+  ResidualMetric metric;
+  metric.step_lengths = metric.scales = Eigen::Vector2d(1.0, 1.0);
+  metric.round_off = Eigen::Vector2d(0.0, 0.0);
+  EXPECT_FALSE(lawResidual(laws, metric, u, r) <= 1e30);
   GlobalResidual broken_first;
   broken_first.law = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(broken_first.value() <= 1e30);

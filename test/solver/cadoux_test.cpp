@@ -63,10 +63,9 @@ TEST(CadouxNewtonTest, OneStepFromTheAffineMapIsExact)
 {
   // F is affine near s = 2: Newton's ds = (F - s)/(1 - F') = -0.4/0.8.
   const DelassusProblem problem = slidingContact();
-  Eigen::VectorXd steps;
-  computeStepLengths(problem, steps);
+  const ResidualMetric metric = makeMetric(problem);
   SlipMap map(exactInner());
-  map.setProblem(problem, steps);
+  map.setProblem(problem, SolveContext{metric});
   map.setGuess(Eigen::VectorXd::Zero(3));
   const Eigen::VectorXd s = map.value();
   ConvexBudget budget;
@@ -103,10 +102,9 @@ TEST(CadouxNewtonTest, StepIsNewtonsOnTheSlipMap)
   problem.W.assign(Eigen::MatrixXd(Eigen::MatrixXd::Identity(9, 9) + 0.05 * H * H.transpose()), problem.laws);
   problem.q.resize(9);
   problem.q << -2.0, 0.1, 0.1, -1.0, 2.0, -1.5, 3.0, 0.3, -0.2;
-  Eigen::VectorXd steps;
-  computeStepLengths(problem, steps);
+  const ResidualMetric metric = makeMetric(problem);
   SlipMap map(std::make_unique<ConvexInteriorPoint>());
-  map.setProblem(problem, steps);
+  map.setProblem(problem, SolveContext{metric});
   map.setGuess(Eigen::VectorXd::Zero(9));
   ConvexBudget budget;
   budget.tolerance = 1e-13;
@@ -208,10 +206,9 @@ TEST(OuterLoopsTest, Example321FromZeroSlipIsUnqualifiedAndLeft)
   DelassusReduction reduction;
   reduction.compute(example321());
   const DelassusProblem& local = reduction.problem();
-  Eigen::VectorXd steps;
-  computeStepLengths(local, steps);
+  const ResidualMetric metric = makeMetric(local);
   SlipMap map(std::make_unique<ConvexInteriorPoint>());
-  map.setProblem(local, steps);
+  map.setProblem(local, SolveContext{metric});
   map.setGuess(Eigen::VectorXd::Zero(3));
   ConvexBudget budget;
   budget.tolerance = 1e-12;
@@ -268,8 +265,8 @@ TEST(InteriorPointTest, ReachesTenDigitsOnRedundantContacts)
 
 TEST(OuterLoopsTest, AnInnerProblemIsNeverAskedForMoreThanATenthOfALooseTolerance)
 {
-  const Eigen::VectorXd step_lengths;
-  SolveContext context{step_lengths};
+  const ResidualMetric metric;
+  SolveContext context{metric};
   SolverResult result;
   const OuterLoop loop(context, result);  // whose last residual counts as 1
   context.tolerance = 1e-8;

@@ -19,8 +19,6 @@ struct Verdict
   double law = 0.0;  ///< E of the laws
   double dynamics = 0.0;  ///< relative momentum defect
   double bilateral = 0.0;  ///< relative violation of G v + b = 0
-  /// max |r_i|/rho_i over max(|q|, |u|): from 1/eps on u is lost in r - rho u and `law` means nothing
-  double runaway = 0.0;
   double worst() const;
 };
 

@@ -22,6 +22,13 @@ struct RowRecord
   double* memory = nullptr;  ///< the impulse of the last step, warm start of this one; none: the source keeps its own
 };
 
+/** @brief What the velocity of a law's rows is. */
+struct RowUnit
+{
+  VelocityUnit unit = VelocityUnit::LENGTH;
+  double reach = 1.0;  ///< of rows of angles: farthest point from the axis that they move [m] > 0; else 1
+};
+
 class RowSink
 {
 public:
@@ -39,13 +46,13 @@ public:
   /** @brief Ends a row of H. @param w [m/s] or [rad/s] */
   void endRow(double w, const RowRecord& record);
   /** @brief The law of the rows that have ended since the last one. */
-  void endLaw(const Law& law) { laws_.push_back(law); }
+  void endLaw(const Law& law, const RowUnit& unit = {});
   /** @brief A velocity that exists for this step only. @param mass [kg] or [kg m^2] > 0 @return its column */
   int addAuxiliary(double mass);
 
   void pushBilateral(int column, double value) { g_.push(column, value); }
   /** @brief Ends a row of G. @param b [m/s] or [rad/s] */
-  void endBilateral(double b, const RowRecord& record);
+  void endBilateral(double b, const RowRecord& record, const RowUnit& unit = {});
 
   /** @brief A row closes at this instant: an impact has something to solve. */
   void noteClosing() { closing_ = true; }
@@ -53,6 +60,8 @@ public:
 
   const std::vector<RowRecord>& rowRecords() const { return row_records_; }
   const std::vector<RowRecord>& bilateralRecords() const { return bilateral_records_; }
+  const std::vector<RowUnit>& units() const { return units_; }
+  const std::vector<RowUnit>& bilateralUnits() const { return bilateral_units_; }
   const std::vector<double>& auxiliaryMass() const { return auxiliary_mass_; }
   const RowBuilder& h() const { return h_; }
   const RowBuilder& g() const { return g_; }
@@ -67,6 +76,8 @@ private:
   std::vector<double> w_;
   std::vector<double> b_;
   std::vector<Law> laws_;
+  std::vector<RowUnit> units_;
+  std::vector<RowUnit> bilateral_units_;
   std::vector<double> auxiliary_mass_;
   std::vector<RowRecord> row_records_;
   std::vector<RowRecord> bilateral_records_;

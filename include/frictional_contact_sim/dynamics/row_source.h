@@ -74,6 +74,14 @@ private:
   std::vector<int> first_;  ///< bodies: joints of those before
 };
 
+/** @brief Unit and reach of a row that is the velocity of a joint with one coordinate. */
+inline RowUnit jointUnit(const Body& body, int joint)
+{
+  const Joint& moved = body.model.tree.joints[joint];
+  return {moved.type == JointType::PRISMATIC ? VelocityUnit::LENGTH : VelocityUnit::ANGLE,
+          body.model.reach[moved.v_index]};
+}
+
 /** @brief Whether the step has to be solved again. */
 enum class Again
 {

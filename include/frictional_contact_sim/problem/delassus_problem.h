@@ -20,6 +20,7 @@ struct DelassusProblem
   DelassusOperator W;  ///< rows x rows; dense when small, block-sparse otherwise
   Eigen::VectorXd q;  ///< rows, free relative velocity [m/s]
   std::vector<Law> laws;  ///< in the order of the rows
+  std::vector<LawScale> scales;  ///< one a law, from a simulation; empty: a bare problem
 };
 
 /** @throws std::invalid_argument naming the field, what was found and what was expected. */

@@ -46,8 +46,8 @@ public:
   /** @brief rho_i = 1/lambda_max(W_ii) of W = H M^-1 H^T, without the bilaterals; what the residual is measured with.
    */
   const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
-  /** @brief Largest entry of w - H M^-1 f, without the bilaterals [m/s]. */
-  double freeVelocity() const { return free_velocity_; }
+  /** @brief w - H M^-1 f, without the bilaterals [m/s]. */
+  const Eigen::VectorXd& freeVelocity() const { return loop_of_.empty() ? local_.q : free_velocity_; }
   /** @brief M^-1 f when there are bilaterals, else empty; the free generalized velocity is its opposite. */
   const Eigen::VectorXd& massInverseForce() const { return mass_inverse_force_; }
 
@@ -102,9 +102,9 @@ private:
   Eigen::VectorXd momentum_;
   Eigen::VectorXd step_lengths_;
   Eigen::VectorXd mass_inverse_force_;
+  Eigen::VectorXd free_velocity_;  ///< with bilaterals only
   DelassusOperator unconstrained_;  ///< Z Z^T, with bilaterals only
   Eigen::MatrixXd gathered_, coupling_;  ///< columns of one law's Z in one loop, and their product with Q
-  double free_velocity_ = 0.0;
   int rank_ = 0;
 };
 

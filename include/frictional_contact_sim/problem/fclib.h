@@ -23,6 +23,10 @@
  *
  * The extra velocities follow the others, moved rows follow those of G; a description should say so (info).
  *
+ * What a simulation knows of the rows' velocities (LawScale) stands in a group of its own, /frictional_contact_sim,
+ * that other readers skip: law_scales and bilateral_scales, a row (unit, reach, speed change, speed) each. So a dumped
+ * step is judged as in the simulation. Local problems with BILATERAL laws are written without.
+ *
  * Threads may call these at the same time: HDF5 is used by one of them at a time.
  *
  * Source: Acary et al. (2014), "FCLIB: a collection of discrete 3D frictional contact problems".

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/problem/law.h"
+#include "frictional_contact_sim/problem/law_scale.h"
 
 namespace frictional_contact_sim
 {
@@ -28,6 +29,8 @@ struct IncrementalProblem
   std::vector<Law> laws;  ///< one law a contact or one-dimensional row, in the order of the rows of H
   SparseRows G;  ///< nb x nv, bilateral rows (may have zero rows)
   Eigen::VectorXd b;  ///< nb [m/s]
+  std::vector<LawScale> scales;  ///< one a law, from a simulation; empty: a bare problem
+  std::vector<LawScale> bilateral_scales;  ///< the same of the rows of G
 
   int velocities() const { return static_cast<int>(f.size()); }
   int rows() const { return static_cast<int>(w.size()); }

@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "frictional_contact_sim/problem/delassus_problem.h"
+#include "frictional_contact_sim/problem/residual_metric.h"
 
 namespace frictional_contact_sim
 {
-/** @brief The stopping criterion at an iterate that a method judged. */
+/** @brief E at an iterate that a method judged. */
 struct HistoryEntry
 {
   int iteration = 0;
@@ -24,9 +25,8 @@ struct HistoryEntry
 
 struct SolveContext
 {
-  const Eigen::VectorXd& step_lengths;  ///< rho_i = 1/lambda_max(W_ii) of the laws, in their order [kg]
-  double free_velocity = 0.0;  ///< |q|_inf, of an island at least a share of the whole's: the scale of E [m/s]
-  double tolerance = 1e-8;  ///< on the stopping criterion [-]
+  const ResidualMetric& metric;  ///< rho_i and S_i of the laws, in their order
+  double tolerance = 1e-8;  ///< on E [-]
   int max_iterations = 1000;
   bool cold_start = true;  ///< no guess was given; refinements of a global solve have one, whoever called it
   std::chrono::steady_clock::time_point start{};  ///< of the call of Solver::solve
@@ -36,13 +36,11 @@ struct SolveContext
 
   double seconds() const;
   bool timeIsUp() const { return deadline > 0.0 && seconds() > deadline; }
-  /**
-   * @brief The stopping criterion at (u, r), u = W r + q given; costs no product with W: E of the problem being solved,
-   * but impulses count in its scale at most IMPULSE_CAP times as much as velocities. Where no solution exists they run
-   * away and plain E would vanish.
-   */
+  /** @brief E at (u, r), u = W r + q given; costs no product with W. */
   double residual(const DelassusProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r) const;
-  /** @brief Called by a method with the criterion at each of its iterates; nothing but a comparison without history. */
+  /** @brief The smallest S_i: what a method asks of an inner problem is an error in [m/s]. */
+  double smallestScale() const { return metric.scales.size() == 0 ? VELOCITY_FLOOR : metric.scales.minCoeff(); }
+  /** @brief Called by a method with E at each of its iterates; nothing but a comparison without history. */
   void note(int iteration, double value) const
   {
     if (history != nullptr)
@@ -50,8 +48,6 @@ struct SolveContext
   }
   /** @brief Iteration of the last entry, where the next island goes on. */
   int notedIterations() const { return history == nullptr || history->empty() ? 0 : history->back().iteration; }
-
-  static constexpr double IMPULSE_CAP = 1e3;
 };
 
 }  // namespace frictional_contact_sim

@@ -3,11 +3,10 @@
  * @file solver.h
  * @brief What every method offers: solve(problem, guess) -> SolverResult. Nothing else is public.
  *
- * Islands (solver/islands.h) are solved apart, each with its part of the guess, whatever the method; with one island
- * nothing is copied. An island's tolerance is relative to its own scale, where the whole's |q| counts at least 1e-3: at
- * least as strict as the whole's, and an island at rest stays solvable. `iterations` is then the largest of them,
- * `tried` their union, `solver` that of the largest island that needed iterations, the status the most severe one (its
- * message names the island's first law). One that fails leaves the others their answers. The residual is the whole
+ * Islands (problem/islands.h) are solved apart, each with its part of the guess, whatever the method; with one island
+ * nothing is copied. An island is measured with its own scale (residual_metric.h). `iterations` is then the largest of
+ * them, `tried` their union, `solver` that of the largest island that needed iterations, the status the most severe one
+ * (its message names the island's first law). One that fails leaves the others their answers. The residual is the whole
  * problem's.
  */
 #include <memory>
@@ -64,15 +63,14 @@ struct SolverResult
   /// |e_i| of problem/residual.h at the answer, a law each, with rho_i of the local problem [m/s]
   Eigen::VectorXd law_errors;
   /**
-   * With record_history: the stopping criterion (E of the local problem, see SolveContext::residual) at every iterate
-   * the methods judged, better or worse, in the order of time; last the answer, with `residual`. Methods of a portfolio
-   * and islands, which are solved one after another, count their iterations on from each other; an island's entries are
-   * relative to its own scale.
+   * With record_history: E of the local problem at every iterate the methods judged, better or worse, in the order of
+   * time; last the answer, with `residual`. Methods of a portfolio and islands, which are solved one after another,
+   * count their iterations on from each other; an island's entries are relative to its own scale.
    */
   std::vector<HistoryEntry> history;
 };
 
-/// SolverResult::residual inside a solve, as long as the stopping criterion has not been evaluated.
+/// SolverResult::residual inside a solve, as long as E has not been evaluated.
 constexpr double UNKNOWN_RESIDUAL = -1.0;
 
 class DelassusReduction;
@@ -111,9 +109,9 @@ public:
 protected:
   /**
    * @brief The method: improves result.solution.r (sized, holding the guess) and sets status, iterations, message.
-   * result.residual is the stopping criterion at that r, before (then result.solution.u = W r + q too) and after, or
-   * negative when it is not known; it only saves evaluations, solve() judges for itself. The criterion at every iterate
-   * that the method judges goes to context.note().
+   * result.residual is E at that r, before (then result.solution.u = W r + q too) and after, or negative when it is not
+   * known; it only saves evaluations, solve() judges for itself. E at every iterate that the method judges goes to
+   * context.note().
    */
   virtual void doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result) = 0;
   /**
@@ -137,28 +135,18 @@ protected:
                        SolverResult& result);
 
 private:
-  /** @brief E, and the stopping criterion at the same point. */
-  struct Verdict
-  {
-    double residual = 0.0;
-    double criterion = 0.0;
-    bool within(double tolerance) const { return residual <= tolerance && criterion <= tolerance; }
-  };
-
   SolveContext begin(SolverResult& result);
-  Verdict solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
-  Verdict solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context,
-                     SolverResult& result);
+  double solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  double solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context, SolverResult& result);
   void solveIslands(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   void solveIsland(const DelassusProblem& whole, const SolveContext& context, IslandSlot& slot);
-  void finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict, SolverResult& result);
-  void judge(const Verdict& verdict, SolverResult& result) const;
+  void finish(const std::vector<Law>& laws, const SolveContext& context, double residual, SolverResult& result);
+  void judge(double residual, SolverResult& result) const;
   void checkOperator(bool global) const;
-  static Verdict measure(const DelassusProblem& problem, const SolveContext& context, const Solution& solution);
 
   std::string name_;
   StoppingOptions stopping_;
-  Eigen::VectorXd step_lengths_;  ///< of the local problem being solved
+  ResidualMetric metric_;  ///< of the local problem being solved
   GlobalResidualData global_;
   Solution warm_;
   DelassusProblem converted_;  ///< a local problem in another storage, when asked for

@@ -24,15 +24,6 @@ bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const
          problem.c.dot(r) <= RECESSION_SLOPE * problem.c.norm() * r.norm();
 }
 
-double velocityScale(const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& r,
-                     const Eigen::VectorXd& step_lengths, const DelassusOperator& W)
-{
-  double scale = std::max({q.lpNorm<Eigen::Infinity>(), u.lpNorm<Eigen::Infinity>(), VELOCITY_FLOOR});
-  for (int i = 0; i < W.blocks(); ++i)
-    scale = std::max(scale, r.segment(W.offset(i), W.dimension(i)).norm() / step_lengths[i]);
-  return scale;
-}
-
 SlipMap::SlipMap(std::unique_ptr<ConvexSolver> inner) : inner_(std::move(inner))
 {
 }
@@ -44,10 +35,11 @@ OperatorUse SlipMap::operatorUse() const
   return inner_->operatorUse();
 }
 
-void SlipMap::setProblem(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths)
+void SlipMap::setProblem(const DelassusProblem& problem, const SolveContext& context)
 {
   problem_ = &problem;
-  makeConeProblem(problem, step_lengths, convex_);
+  velocity_scale_ = context.smallestScale();
+  makeConeProblem(problem, context.metric.step_lengths, convex_);
   contacts_.clear();
   for (size_t i = 0; i < problem.laws.size(); ++i)
     if (problem.laws[i].isCoulomb() && problem.laws[i].coefficient > 0.0)
@@ -86,7 +78,7 @@ ConvexResult SlipMap::evaluate(const Eigen::VectorXd& s, const ConvexBudget& bud
 
 ConvexResult SlipMap::evaluate(const Eigen::VectorXd& s, double relative_tolerance, ConvexBudget& budget)
 {
-  budget.tolerance = relative_tolerance * velocityScale(problem_->q, u_, r_, convex_.step_lengths, problem_->W);
+  budget.tolerance = relative_tolerance * velocity_scale_;
   return evaluate(s, static_cast<const ConvexBudget&>(budget));
 }
 

@@ -17,16 +17,13 @@
 #include <vector>
 
 #include "frictional_contact_sim/solver/convex/convex_solver.h"
+#include "frictional_contact_sim/solver/solve_context.h"
 
 namespace frictional_contact_sim
 {
 /** @brief True when r is, numerically, a direction along which the convex problem does not grow (huge, W r and c.r
  * nearly zero beside it): the answer of a run that has nothing to converge to. u = W r + c. */
 bool isUnqualified(const ConvexProblem& problem, const Eigen::VectorXd& u, const Eigen::VectorXd& r);
-
-/** @brief max(|q|_inf, |u|_inf, max_i |r_i|/rho_i, 1e-12) [m/s]: the scale of the package's residual. */
-double velocityScale(const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& r,
-                     const Eigen::VectorXd& step_lengths, const DelassusOperator& W);
 
 class SlipMap
 {
@@ -37,12 +34,12 @@ public:
   OperatorUse operatorUse() const;
 
   /** @brief Makes the cone problem; sizes s() to the frictional contacts. */
-  void setProblem(const DelassusProblem& problem, const Eigen::VectorXd& step_lengths);
+  void setProblem(const DelassusProblem& problem, const SolveContext& context);
   /** @brief r and s = |u_T(r)| from a guess of the impulses. */
   void setGuess(const Eigen::VectorXd& r);
   /** @brief Evaluates F at s from the present r. */
   ConvexResult evaluate(const Eigen::VectorXd& s, const ConvexBudget& budget);
-  /** @brief The same, to a tolerance relative to velocityScale() at the present point; sets budget.tolerance. */
+  /** @brief The same, to a tolerance relative to the smallest scale of E; sets budget.tolerance. */
   ConvexResult evaluate(const Eigen::VectorXd& s, double relative_tolerance, ConvexBudget& budget);
 
   int size() const { return static_cast<int>(contacts_.size()); }
@@ -61,6 +58,7 @@ private:
   std::unique_ptr<ConvexSolver> inner_;
   const DelassusProblem* problem_ = nullptr;
   ConvexProblem convex_;
+  double velocity_scale_ = 0.0;  ///< [m/s]
   std::vector<int> contacts_;
   Eigen::VectorXd value_, r_, u_, shifted_;
 };

@@ -1,4 +1,4 @@
-#include "frictional_contact_sim/solver/islands.h"
+#include "frictional_contact_sim/problem/islands.h"
 
 #include <algorithm>
 #include <numeric>

@@ -22,6 +22,8 @@ public:
   int find(const DelassusOperator& W);
 
   int count() const { return static_cast<int>(order_.size()); }
+  /** @brief The k of a law's island, 0 when there is one only; not in the order of laws(): the first law's is 0. */
+  int islandOf(int law) const { return order_.empty() ? 0 : island_[static_cast<size_t>(law)]; }
   /** @brief Laws of the k-th island in ascending order; islands are ordered by rows, smallest first, then by first law.
    */
   void laws(int k, std::vector<int>& laws) const;
