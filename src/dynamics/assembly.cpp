@@ -13,8 +13,8 @@ namespace
 {
 constexpr int MOST_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last
 constexpr double UNSETTLED = 1e3;  ///< times its threshold: what a bias may still miss after the most rounds
-constexpr double SMALLEST_CHANGE = 1e-12;  ///< of speed by one step's forces [m/s]
 constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
+constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
 constexpr double SPEED_ROUND_OFF = 1e-14;  ///< relative to the speed itself
 }  // namespace
 
@@ -143,9 +143,7 @@ void StepAssembly::predict(const StepContext& context, Body& body, const Solutio
     moveFreely(body, context.gravity, context.dt);
   else
     move(body.v_free);
-  body.change = body.v_free - body.v_start;
-  body.speed_change = std::max(SMALLEST_CHANGE, pointSpeed(body, body.change));
-  body.speed = std::max(pointSpeed(body, body.v_start), pointSpeed(body, body.v_free));
+  setSpeeds(body);
   if (answer)
   {
     body.v_middle = 0.5 * (body.v_start + answer->v.segment(body.v_offset, tree.nv));
@@ -238,6 +236,11 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
 {
   const MultibodyModel& tree = body.model.tree;
   const auto v = solution.v.segment(body.v_offset, tree.nv);
+  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
+  // What rests has nothing to look at: velocities enter the bias as squares.
+  const double fastest = std::max(body.v_start.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  if (context.dt * AT_REST * fastest * fastest <= tolerance * body.speed_change)
+    return 0.0;
   body.v_middle = 0.5 * (body.v_start + v);
   computeBias(body, body.v_middle, context.gravity, body.next_bias);
   body.change = context.dt * (body.next_bias - body.bias);
@@ -245,7 +248,6 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
     return 0.0;
   solveMassMatrix(tree, body.middle, body.change);
   const double change = pointSpeed(body, body.change);
-  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
   if (change <= tolerance * body.speed_change)
     return 0.0;
   // A body that was at rest and is hit has no smooth forces at the start; then those at its mean velocity count.

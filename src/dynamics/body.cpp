@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <variant>
 
 #include "frictional_contact_sim/dynamics/free_link.h"
@@ -13,6 +14,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double SMALLEST_CHANGE = 1e-12;  ///< of speed by one step's forces [m/s]
+
 struct Reach
 {
   double operator()(const Sphere& sphere) const { return sphere.radius; }
@@ -86,6 +89,15 @@ std::vector<std::vector<int>> linkChains(const MultibodyModel& model)
       chains[link].push_back(joint.v_index + k);
   }
   return chains;
+}
+
+/** Largest speed of a point of one link, from its velocity about the reference. */
+double linkSpeed(const Body& body, size_t link, const Vector6d& velocity)
+{
+  const Eigen::Vector3d angular = velocity.tail<3>();
+  const Eigen::Vector3d arm = body.middle.link_pose[link].translation() - body.middle.reference;
+  const Eigen::Vector3d linear = velocity.head<3>() + angular.cross(arm);
+  return linear.norm() + angular.norm() * body.model.sizes[link];
 }
 
 [[noreturn]] void fail(const BodyModel& model, const std::string& message)
@@ -225,15 +237,28 @@ double pointSpeed(Body& body, const Eigen::VectorXd& v)
 {
   forwardVelocities(body.model.tree, v, body.middle);
   double speed = 0.0;
-  for (size_t link = 0; link < body.model.tree.links.size(); ++link)
-  {
-    const Vector6d& velocity = body.middle.link_velocity[link];
-    const Eigen::Vector3d angular = velocity.tail<3>();
-    const Eigen::Vector3d arm = body.middle.link_pose[link].translation() - body.middle.reference;
-    const Eigen::Vector3d linear = velocity.head<3>() + angular.cross(arm);
-    speed = std::max(speed, linear.norm() + angular.norm() * body.model.sizes[link]);
-  }
+  for (size_t link = 0; link < body.middle.link_velocity.size(); ++link)
+    speed = std::max(speed, linkSpeed(body, link, body.middle.link_velocity[link]));
   return speed;
+}
+
+void setSpeeds(Body& body)
+{
+  MultibodyData& data = body.middle;
+  if (body.model.free_link)
+    forwardVelocities(body.model.tree, body.v_start, data);  // its bias needs none
+  std::swap(data.link_velocity, data.link_force);  // those at v_start, where the recursion has its scratch
+  body.change = body.v_free - body.v_start;
+  forwardVelocities(body.model.tree, body.change, data);
+  body.speed = 0.0;
+  body.speed_change = SMALLEST_CHANGE;
+  for (size_t link = 0; link < data.link_velocity.size(); ++link)
+  {
+    const Vector6d& start = data.link_force[link];
+    const Vector6d& change = data.link_velocity[link];
+    body.speed = std::max({body.speed, linkSpeed(body, link, start), linkSpeed(body, link, start + change)});
+    body.speed_change = std::max(body.speed_change, linkSpeed(body, link, change));
+  }
 }
 
 void applyWrenches(Body& body, double now)

@@ -119,6 +119,9 @@ void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gr
 /** @brief Largest speed of a point of the links, bound by sizes [m/s]. Writes middle.link_velocity. */
 double pointSpeed(Body& body, const Eigen::VectorXd& v);
 
+/** @brief Body::speed and speed_change from v_start and v_free, after computeBias at v_start. Uses its scratch. */
+void setSpeeds(Body& body);
+
 /**
  * @brief Generalized force of the wrenches that act at scenario time `now` [s]; those that have expired are removed.
  * Needs body.middle.
