@@ -4,10 +4,20 @@
 #include <cassert>
 #include <utility>
 
+#include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 
 namespace frictional_contact_sim
 {
+namespace
+{
+constexpr int MOST_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last
+constexpr double UNSETTLED = 1e3;  ///< times its threshold: what a bias may still miss after the most rounds
+constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
+constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
+constexpr double SPEED_ROUND_OFF = 1e-14;  ///< relative to the speed itself
+}  // namespace
+
 StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_ptr<RowSource>> sources, RowState& state)
   : bodies_(bodies), sources_(std::move(sources)), state_(state)
 {
@@ -15,7 +25,9 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
   {
     body.v_offset = velocities_;
     velocities_ += body.model.tree.nv;
+    body_of_.resize(velocities_, static_cast<int>(&body - bodies_.data()));
   }
+  acting_.resize(bodies_.size());
   // Entry (i, j) of M is structurally nonzero when one coordinate is the other's ancestor (Featherstone 2008, 6.3).
   mass_columns_.resize(velocities_);
   for (const Body& body : bodies_)
@@ -34,8 +46,11 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
 
 void StepAssembly::begin(StepContext& context)
 {
-  for (const Body& body : bodies_)
-    v_old_.segment(body.v_offset, body.model.tree.nv) = body.state.v;
+  for (Body& body : bodies_)
+  {
+    setStartVelocity(body, context.impact);
+    v_old_.segment(body.v_offset, body.model.tree.nv) = body.v_start;
+  }
   context.v_old = &v_old_;
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->begin(context);
@@ -97,52 +112,98 @@ void StepAssembly::assembleMass(bool with_implicit)
   rows_m_.copyTo(sink_.columns(), problem_.M);
 }
 
-int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess)
+/** Which bodies a row with an impulse touches. */
+void StepAssembly::findActing(const Solution& solution)
 {
-  const double dt = context.dt;
-  const int size = sink_.columns();
-  problem_.f.setZero(size);
-  momentum_.resize(velocities_);
-  assert(guess.r.size() == problem_.rows());
-  if (!context.impact)
+  std::fill(acting_.begin(), acting_.end(), 0);
+  const auto mark = [this](const SparseRows& rows, const Eigen::VectorXd& impulses)
   {
-    impulse_.setZero(size);
-    if (problem_.rows() > 0)
-      impulse_.noalias() += problem_.H.transpose() * guess.r;
-    if (problem_.bilaterals() > 0)
-      impulse_.noalias() += problem_.G.transpose() * guess.lambda;
+    for (int i = 0; i < rows.rows(); ++i)
+      if (impulses[i] != 0.0)
+        for (SparseRows::InnerIterator entry(rows, i); entry; ++entry)
+          if (entry.col() < velocities_)
+            acting_[body_of_[entry.col()]] = 1;
+  };
+  mark(problem_.H, solution.r);
+  mark(problem_.G, solution.lambda);
+}
+
+/** Body::v_free, its speeds, and bias at the first guess of the mean velocity (or at that of an answer). */
+void StepAssembly::predict(const StepContext& context, Body& body, const Solution* answer)
+{
+  const MultibodyModel& tree = body.model.tree;
+  const auto momentum = momentum_.segment(body.v_offset, tree.nv);
+  const auto move = [&](Eigen::VectorXd& v)
+  {
+    v = momentum - context.dt * body.bias;
+    solveMassMatrix(tree, body.middle, v);
+  };
+  computeBias(body, body.v_start, context.gravity, body.bias);
+  if (body.model.free_link)
+    moveFreely(body, context.gravity, context.dt);
+  else
+    move(body.v_free);
+  setSpeeds(body);
+  if (answer)
+  {
+    body.v_middle = 0.5 * (body.v_start + answer->v.segment(body.v_offset, tree.nv));
+    computeBias(body, body.v_middle, context.gravity, body.bias);
+    return;
+  }
+  if (acting_[body_of_[body.v_offset]])
+    return;
+  const double allowed = std::max(context.tolerance, BIAS_ROUND_OFF) * body.speed_change;
+  for (int round = 0; round < MOST_BIAS_ROUNDS; ++round)
+  {
+    body.v_middle = 0.5 * (body.v_start + body.v_free);
+    computeBias(body, body.v_middle, context.gravity, body.bias);
+    if (body.model.free_link)
+      return;
+    body.change = body.v_free;
+    move(body.v_free);
+    body.change -= body.v_free;
+    if (pointSpeed(body, body.change) <= allowed)
+      return;
+  }
+}
+
+/** f of one body; false where its mass matrix is not positive definite. */
+bool StepAssembly::assembleForces(const StepContext& context, int index, const Solution* answer)
+{
+  Body& body = bodies_[index];
+  const MultibodyModel& tree = body.model.tree;
+  auto momentum = momentum_.segment(body.v_offset, tree.nv);  // M v_k + dt applied + c, without bias
+  momentum.noalias() = body.middle.mass_matrix * body.v_start;
+  if (context.impact)
+  {
+    problem_.f.segment(body.v_offset, tree.nv) = -momentum;
+    return true;
+  }
+  momentum += context.dt * body.external;
+  body.implicit = context.dt * body.model.damping;
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->addMomentum(context, index, momentum);
+  if (!factorizeMassMatrix(tree, body.implicit, body.middle))
+    return false;
+  predict(context, body, answer);
+  problem_.f.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;
+  return true;
+}
+
+int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer)
+{
+  assert(guess.r.size() == problem_.rows());
+  problem_.f.setZero(sink_.columns());
+  momentum_.resize(velocities_);
+  if (answer == nullptr)
+  {
+    findActing(guess);
+    bias_rounds_ = 0;
   }
   int singular = -1;
   for (size_t b = 0; b < bodies_.size(); ++b)
-  {
-    Body& body = bodies_[b];
-    const MultibodyModel& tree = body.model.tree;
-    if (tree.nv == 0)
-      continue;
-    auto momentum = momentum_.segment(body.v_offset, tree.nv);  // M v_k + dt applied + c, without bias
-    momentum.noalias() = body.middle.mass_matrix * body.state.v;
-    if (context.impact)
-    {
-      problem_.f.segment(body.v_offset, tree.nv) = -momentum;
-      continue;
-    }
-    momentum += dt * body.external;
-    body.implicit = dt * body.model.damping;
-    for (const std::unique_ptr<RowSource>& source : sources_)
-      source->addMomentum(context, static_cast<int>(b), momentum);
-
-    computeBiasForces(tree, body.state.v, context.gravity, body.middle, body.bias);
-    if (!factorizeMassMatrix(tree, body.implicit, body.middle))
-    {
+    if (bodies_[b].model.tree.nv > 0 && !assembleForces(context, static_cast<int>(b), answer))
       singular = static_cast<int>(b);
-      continue;
-    }
-    body.v_middle = momentum - dt * body.bias + impulse_.segment(body.v_offset, tree.nv);
-    solveMassMatrix(tree, body.middle, body.v_middle);
-    body.v_middle = 0.5 * (body.v_middle + body.state.v);
-    computeBiasForces(tree, body.v_middle, context.gravity, body.middle, body.bias);
-    problem_.f.segment(body.v_offset, tree.nv) = dt * body.bias - momentum;
-  }
   assembleMass(!context.impact);
   return singular;
 }
@@ -167,7 +228,67 @@ Again StepAssembly::again(const StepContext& context, const Solution& solution, 
       unsatisfied_ = source->name();
       return again;
     }
-  return Again::NO;
+  return converged && !context.impact ? biasAgain(context, solution) : Again::NO;
+}
+
+/** How much the bias at the mean velocity of an answer misses, in units of what it may: Body::next_bias, change. */
+double StepAssembly::biasMiss(const StepContext& context, const Solution& solution, Body& body)
+{
+  const MultibodyModel& tree = body.model.tree;
+  const auto v = solution.v.segment(body.v_offset, tree.nv);
+  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
+  // What rests has nothing to look at: velocities enter the bias as squares.
+  const double fastest = std::max(body.v_start.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  if (context.dt * AT_REST * fastest * fastest <= tolerance * body.speed_change)
+    return 0.0;
+  body.v_middle = 0.5 * (body.v_start + v);
+  computeBias(body, body.v_middle, context.gravity, body.next_bias);
+  body.change = context.dt * (body.next_bias - body.bias);
+  if (body.change.isZero(0.0))
+    return 0.0;
+  solveMassMatrix(tree, body.middle, body.change);
+  const double change = pointSpeed(body, body.change);
+  if (change <= tolerance * body.speed_change)
+    return 0.0;
+  // A body that was at rest and is hit has no smooth forces at the start; then those at its mean velocity count.
+  body.change = v;
+  double allowed = std::max(tolerance * body.speed_change, SPEED_ROUND_OFF * pointSpeed(body, body.change));
+  body.change = context.dt * body.next_bias;
+  solveMassMatrix(tree, body.middle, body.change);
+  allowed = std::max(allowed, tolerance * pointSpeed(body, body.change));
+  return change <= allowed ? 0.0 : change / allowed;
+}
+
+Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
+{
+  const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
+  double worst = 0.0;
+  findActing(solution);
+  for (Body& body : bodies_)
+  {
+    const int nv = body.model.tree.nv;
+    // A free link that nothing touches has its exact motion already: settleFreeLinks.
+    const bool settled = nv == 0 || (body.model.free_link && !acting_[body_of_[body.v_offset]]);
+    const double miss = settled ? 0.0 : biasMiss(context, solution, body);
+    worst = std::max(worst, miss);
+    if (miss == 0.0 || last)
+      continue;
+    problem_.f.segment(body.v_offset, nv) += context.dt * (body.next_bias - body.bias);
+    body.bias = body.next_bias;
+  }
+  if (worst == 0.0 || (last && worst < UNSETTLED))
+    return Again::NO;
+  unsatisfied_ = "bias at the midpoint";
+  ++bias_rounds_;
+  return last ? Again::NEVER : Again::FORCES;
+}
+
+void StepAssembly::settleFreeLinks(Solution& solution)
+{
+  findActing(solution);
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (bodies_[b].model.free_link && !acting_[b])
+      solution.v.segment<6>(bodies_[b].v_offset) = bodies_[b].v_free;
 }
 
 void StepAssembly::setMeanVelocity(const Solution& solution)
@@ -176,7 +297,7 @@ void StepAssembly::setMeanVelocity(const Solution& solution)
   for (Body& body : bodies_)
   {
     const int nv = body.model.tree.nv;
-    body.v_middle = 0.5 * (body.state.v + solution.v.segment(body.v_offset, nv));
+    body.v_middle = 0.5 * (body.v_start + solution.v.segment(body.v_offset, nv));
     v_mean_.segment(body.v_offset, nv) = body.v_middle;
   }
 }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <variant>
 
+#include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
 
@@ -12,6 +14,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double SMALLEST_CHANGE = 1e-12;  ///< of speed by one step's forces [m/s]
+
 struct Reach
 {
   double operator()(const Sphere& sphere) const { return sphere.radius; }
@@ -32,6 +36,47 @@ std::vector<double> linkExtents(const MultibodyModel& model)
   return extents;
 }
 
+std::vector<double> linkSizes(const MultibodyModel& model, const std::vector<double>& extents)
+{
+  std::vector<double> sizes = extents;
+  std::vector<bool> shaped(sizes.size(), false);
+  for (const CollisionShape& shape : model.shapes)
+    shaped[shape.link] = true;
+  for (size_t link = 0; link < sizes.size(); ++link)
+  {
+    const RigidInertia& inertia = model.links[link].inertia;
+    // The largest radius of gyration is at most that of the polar moment, half the trace.
+    if (!shaped[link] && inertia.mass > 0.0)
+      sizes[link] = inertia.center.norm() + std::sqrt(0.5 * inertia.rotational.trace() / inertia.mass);
+  }
+  return sizes;
+}
+
+/** See BodyModel::reach. Leaves first: what hangs on a link is known before the link's own joint asks. */
+Eigen::VectorXd jointReach(const MultibodyModel& model, const std::vector<double>& sizes)
+{
+  std::vector<double> farthest = sizes;  // of the subtree, from the link's origin
+  Eigen::VectorXd reach = Eigen::VectorXd::Ones(model.nv);
+  for (int link = static_cast<int>(model.links.size()) - 1; link >= 0; --link)
+  {
+    const Joint& joint = model.joints[link];
+    double slide = 0.0;
+    if (joint.type == JointType::PRISMATIC && std::isfinite(joint.limit.upper - joint.limit.lower))
+      slide = std::max(std::abs(joint.limit.lower), std::abs(joint.limit.upper));
+    const int size = velocitySize(joint.type);
+    const int linear = joint.type == JointType::FLOATING    ? 3
+                       : joint.type == JointType::PLANAR    ? 2
+                       : joint.type == JointType::PRISMATIC ? 1
+                                                            : 0;
+    for (int k = linear; k < size; ++k)
+      reach[joint.v_index + k] = farthest[link];
+    if (joint.parent >= 0)
+      farthest[joint.parent] =
+          std::max(farthest[joint.parent], joint.placement.translation().norm() + slide + farthest[link]);
+  }
+  return reach;
+}
+
 std::vector<std::vector<int>> linkChains(const MultibodyModel& model)
 {
   std::vector<std::vector<int>> chains(model.links.size());
@@ -44,6 +89,15 @@ std::vector<std::vector<int>> linkChains(const MultibodyModel& model)
       chains[link].push_back(joint.v_index + k);
   }
   return chains;
+}
+
+/** Largest speed of a point of one link, from its velocity about the reference. */
+double linkSpeed(const Body& body, size_t link, const Vector6d& velocity)
+{
+  const Eigen::Vector3d angular = velocity.tail<3>();
+  const Eigen::Vector3d arm = body.middle.link_pose[link].translation() - body.middle.reference;
+  const Eigen::Vector3d linear = velocity.head<3>() + angular.cross(arm);
+  return linear.norm() + angular.norm() * body.model.sizes[link];
 }
 
 [[noreturn]] void fail(const BodyModel& model, const std::string& message)
@@ -59,6 +113,10 @@ BodyModel::BodyModel(MultibodyModel multibody_model)
   , servo_inertia(tree.joints.size(), 0.0)
   , chains(linkChains(tree))
   , extents(linkExtents(tree))
+  , sizes(linkSizes(tree, extents))
+  , reach(jointReach(tree, sizes))
+  , free_link(isFreeLink(tree))
+  , isotropic(isIsotropic(tree))
 {
   for (const Joint& joint : tree.joints)
     if (velocitySize(joint.type) == 1)
@@ -90,9 +148,13 @@ Body::Body(const BodyModel& body_model, BodyState& body_state)
   , middle(model.tree)
   , end(model.tree)
   , q_middle(state.q)
-  , v_middle(Eigen::VectorXd::Zero(model.tree.nv))
+  , v_start(Eigen::VectorXd::Zero(model.tree.nv))
+  , v_free(v_start)
+  , v_middle(v_start)
   , external(v_middle)
   , bias(v_middle)
+  , next_bias(v_middle)
+  , change(v_middle)
   , implicit(v_middle)
 {
 }
@@ -127,10 +189,76 @@ void updateEnd(Body& body)
 
 void moveToMidpoint(Body& body, double dt)
 {
-  integrate(body.model.tree, body.state.q, body.state.v, 0.5 * dt, body.q_middle);
+  if (body.model.free_link)
+    moveFreeLinkToMidpoint(body, dt);
+  else
+    integrate(body.model.tree, body.state.q, body.state.v, 0.5 * dt, body.q_middle);
   body.middle.base_pose = basePose(body, 0.5 * dt);
   forwardKinematics(body.model.tree, body.q_middle, body.middle);
   computeMassMatrix(body.model.tree, body.middle);
+}
+
+void setStartVelocity(Body& body, bool impact)
+{
+  if (body.model.free_link && !impact)
+    mapFreeLinkStart(body);
+  else
+    body.v_start = body.state.v;
+}
+
+void moveToEnd(Body& body, const VectorIn& v, double dt)
+{
+  if (body.model.free_link)
+    moveFreeLinkToEnd(body, v, dt);
+  else
+  {
+    body.state.v = v;
+    integrate(body.model.tree, body.state.q, body.v_middle, dt, body.state.q);
+  }
+  body.state.base_pose = basePose(body, dt);
+  updateEnd(body);
+}
+
+void stand(Body& body)
+{
+  body.state.v.setZero();
+  body.v_start.setZero();
+}
+
+void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
+{
+  if (body.model.free_link)
+    computeFreeLinkBias(body, v, gravity, bias);
+  else
+    computeBiasForces(body.model.tree, v, gravity, body.middle, bias);
+}
+
+double pointSpeed(Body& body, const Eigen::VectorXd& v)
+{
+  forwardVelocities(body.model.tree, v, body.middle);
+  double speed = 0.0;
+  for (size_t link = 0; link < body.middle.link_velocity.size(); ++link)
+    speed = std::max(speed, linkSpeed(body, link, body.middle.link_velocity[link]));
+  return speed;
+}
+
+void setSpeeds(Body& body)
+{
+  MultibodyData& data = body.middle;
+  if (body.model.free_link)
+    forwardVelocities(body.model.tree, body.v_start, data);  // its bias needs none
+  std::swap(data.link_velocity, data.link_force);  // those at v_start, where the recursion has its scratch
+  body.change = body.v_free - body.v_start;
+  forwardVelocities(body.model.tree, body.change, data);
+  body.speed = 0.0;
+  body.speed_change = SMALLEST_CHANGE;
+  for (size_t link = 0; link < data.link_velocity.size(); ++link)
+  {
+    const Vector6d& start = data.link_force[link];
+    const Vector6d& change = data.link_velocity[link];
+    body.speed = std::max({body.speed, linkSpeed(body, link, start), linkSpeed(body, link, start + change)});
+    body.speed_change = std::max(body.speed_change, linkSpeed(body, link, change));
+  }
 }
 
 void applyWrenches(Body& body, double now)

@@ -65,25 +65,33 @@ double Simulator::Impl::lookAhead() const
 
 void Simulator::Impl::solveStep()
 {
-  Again again = Again::NO;
+  Again again = Again::FROM_GUESS;
   do
   {
-    assembly.assembleRows(context);
-    assembly.makeGuess(context, guess);
-    const int singular = assembly.assembleDynamics(context, guess);
-    if (singular >= 0)
+    if (again != Again::FORCES)
     {
-      fail(SolverStatus::NUMERICAL_FAILURE,
-           "the mass matrix of body '" + bodies[singular].model.name + "' is not positive definite");
-      return;
+      assembly.assembleRows(context);
+      assembly.makeGuess(context, guess);
+      const bool from_answer = again == Again::FROM_ANSWER;
+      const int singular = assembly.assembleDynamics(context, guess, from_answer ? &result.solution : nullptr);
+      if (singular >= 0)
+      {
+        fail(SolverStatus::NUMERICAL_FAILURE,
+             "the mass matrix of body '" + bodies[singular].model.name + "' is not positive definite");
+        return;
+      }
+      if (from_answer && result.solution.r.size() == guess.r.size())
+        guess.r = result.solution.r;
     }
-    if (again == Again::FROM_ANSWER && result.solution.r.size() == guess.r.size())
-      guess.r = result.solution.r;
+    else
+      guess = result.solution;
     solve();
     again = Again::NO;
     if (isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
-  } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER);
+  } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
+  if (isMotion(result.solution))
+    assembly.settleFreeLinks(result.solution);
   if (again == Again::NEVER)
   {
     result.status = SolverStatus::MAX_ITERATIONS;
@@ -149,12 +157,7 @@ void Simulator::Impl::advance()
   if (!held)
     assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)
-  {
-    body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
-    integrate(body.model.tree, body.state.q, body.v_middle, context.dt, body.state.q);
-    body.state.base_pose = basePose(body, context.dt);
-    updateEnd(body);
-  }
+    moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.tree.nv), context.dt);
   assembly.accept(context, {result.solution, result.law_errors});
   ++state.clock.steps;
   ++state.scenario_clock.steps;
@@ -172,7 +175,7 @@ bool Simulator::Impl::handleFailure()
   result.solution.lambda.setZero(assembly.problem().bilaterals());
   result.law_errors.setZero();  // of standing still
   for (Body& body : bodies)
-    body.state.v.setZero();
+    stand(body);
   return true;
 }
 

@@ -131,7 +131,7 @@ TEST_F(ContactRowsTest, NormalWorkGoesToImpactAndTangentialWorkToFriction)
   place(random, 1e-5);
   bench_.assemble();
   Solution solution = bench_.blank();
-  solution.v = bench_.body().state.v;  // mean velocity is v itself
+  solution.v = bench_.body().v_start;  // mean velocity is that of the start, in the columns of the problem
   solution.r << 0.5, -0.2, 0.1;
   EnergyLedger ledger;
   bench_.assembly().setMeanVelocity(solution);

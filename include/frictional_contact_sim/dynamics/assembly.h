@@ -7,9 +7,19 @@
  *     f = -M(q_m) v_k + dt (bias(q_m, v_m) - applied) - c       c: servo offsets, see actuation.h
  *     u = H v + w,   G v + b = 0                                the rows of all row sources (row_source.h)
  *
- * with the predicted v_m = (v_k + v_free)/2, v_free the solution of M v + f = H^T r_last with bias at v_k and the last
- * step's impulses of contacts that persist: second order, and at rest exactly zero. Source: Cadoux (2009),
- * (2.28)-(2.31).
+ * v_m is the mean velocity (v_k + v_k+1)/2 of this very step; v_k is Body::v_start (an image for free links, whose bias
+ * is another too: free_link.h). The first guess of it, body by body:
+ *
+ *     v_k                         where a row acted in the last step (the guess has an impulse on the body)
+ *     (v_k + v_free)/2            elsewhere, v_free = M^-1 (M v_k + c + dt (applied - bias((v_k + v_free)/2))): exact
+ * where no row will act
+ *
+ * After a solve, where the bias at (v_k + v)/2 changes v by more than tolerance times Body::speed_change, measured as
+ * the largest speed of a point in M^-1 dt (change of bias), it is put into f and the step is solved again from its
+ * answer: f alone has changed (Again::FORCES), the rows stand. A round gains a factor of about dt times the angular
+ * velocity; at most 5 a step, counted anew when rows change. Second order, at rest exactly zero, and no force of an
+ * earlier step enters: an over-determined set of contacts may carry any self-stress, and the next set is another one
+ * (from those forces a published biped got a predicted velocity of 1e6 m/s). Source: Cadoux (2009), (2.28)-(2.31).
  */
 #include <Eigen/Core>
 #include <memory>
@@ -36,15 +46,22 @@ public:
   void makeGuess(const StepContext& context, Solution& guess) const;
   /**
    * @brief M and f, after assembleRows; in an impact M v - M v_k = H^T r.
-   * @param guess its impulses give the predicted midpoint velocity
+   * @param guess which bodies it has impulses on decides the first guess of their mean velocity
+   * @param answer where rows have moved after a solve: the mean velocity comes from its v instead
    * @return index of a body whose mass matrix is not positive definite, else -1
    */
-  int assembleDynamics(const StepContext& context, const Solution& guess);
+  int assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer = nullptr);
   /** @brief A problem without rows and forces, in place of one that could not be assembled. */
   void clear();
 
-  /** @brief Whether rows want the step solved again. @param converged the solve's verdict */
+  /**
+   * @brief Whether rows, or else the bias, want the step solved again. After FORCES the problem's f is new.
+   * @param converged the solve's verdict
+   */
   Again again(const StepContext& context, const Solution& solution, bool converged);
+  /** @brief Free links without an impulse in `solution`, finite, get their free motion without the solve's round-off.
+   */
+  void settleFreeLinks(Solution& solution);
   /** @brief Name of the rows that said anything but NO last. */
   const char* unsatisfied() const { return unsatisfied_; }
   /** @brief Sets the bodies' v_middle to the mean of old and new velocity. */
@@ -63,6 +80,11 @@ public:
   double bilateralViolation() const;
 
 private:
+  bool assembleForces(const StepContext& context, int body, const Solution* answer);
+  void predict(const StepContext& context, Body& body, const Solution* answer);
+  void findActing(const Solution& solution);
+  Again biasAgain(const StepContext& context, const Solution& solution);
+  double biasMiss(const StepContext& context, const Solution& solution, Body& body);
   void assembleMass(bool with_implicit);
   void bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record, EnergyLedger& ledger) const;
 
@@ -73,8 +95,10 @@ private:
   int velocities_ = 0;
   Eigen::VectorXd v_old_;  ///< velocities_: at the start of the step
   Eigen::VectorXd v_mean_;  ///< of the bodies, 0 for auxiliary columns
-  Eigen::VectorXd impulse_;  ///< generalized impulse of the guess
   Eigen::VectorXd momentum_;  ///< without bias, body by body
+  std::vector<int> body_of_;  ///< velocities_: body of a column
+  std::vector<char> acting_;  ///< bodies: an impulse of the guess (or answer) acts on it
+  int bias_rounds_ = 0;  ///< since rows changed last
   RowSink sink_;
   RowBuilder rows_m_;
   std::vector<std::vector<int>> mass_columns_;  ///< tree pattern of M, row by row

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
 
@@ -33,6 +34,13 @@ struct BodyModel
   std::vector<double> servo_inertia;  ///< joints: what a servo moves, at the initial position
   std::vector<std::vector<int>> chains;  ///< links: velocity coordinates that move it, ascending
   std::vector<double> extents;  ///< links: farthest shape point from the link origin [m]
+  /// Links: extents, or without shapes the distance of the centre of mass plus its radius of gyration [m].
+  std::vector<double> sizes;
+  /// nv: farthest that a point of the moved links can be from the joint [m], from sizes, placements and the limits of
+  /// sliding joints (those without limits count as zero); 1 for coordinates along which the links slide.
+  Eigen::VectorXd reach;
+  bool free_link;  ///< one floating link: stepped about its centre of mass, see free_link.h
+  bool isotropic;  ///< the root link's principal moments are equal
   BaseMotion base_motion;
 
   /** @brief True for joints with exactly one coordinate that do not mimic another: those take commands. */
@@ -74,10 +82,16 @@ struct Body
   MultibodyData middle;  ///< at the midpoint of the step
   MultibodyData end;  ///< at the end of the step
   Eigen::VectorXd q_middle;  ///< nq
-  Eigen::VectorXd v_middle;  ///< nv, mean of old and new velocity once the step is solved
+  Eigen::VectorXd v_start;  ///< nv, at the start of the step in the problem's columns; a free link's is an image
+  Eigen::VectorXd v_free;  ///< nv, at the end of the step without any row, in the problem's columns
+  Eigen::VectorXd v_middle;  ///< nv, mean of v_start and the new velocity once the step is solved
   Eigen::VectorXd external;  ///< nv, generalized force of external wrenches at the midpoint
-  Eigen::VectorXd bias;  ///< nv, at the midpoint
+  Eigen::VectorXd bias;  ///< nv, at the midpoint, what f was assembled with
+  Eigen::VectorXd next_bias;  ///< nv, at the mean velocity of an answer
+  Eigen::VectorXd change;  ///< nv, scratch: change of velocity
   Eigen::VectorXd implicit;  ///< nv, servo stiffness and damping on the diagonal of M
+  double speed = 0.0;  ///< largest speed of a point of its links at v_start and v_free [m/s]
+  double speed_change = 0.0;  ///< largest change of such a speed by one step's smooth forces, at least 1e-12 [m/s]
   int v_offset = 0;  ///< of its velocities in the problem
 };
 
@@ -89,6 +103,24 @@ void updateEnd(Body& body);
 
 /** @brief Midpoint q (+) dt/2 v, its poses and mass matrix in `body.middle`. */
 void moveToMidpoint(Body& body, double dt);
+
+/** @brief v_start from the state. In an impact (no motion) the state's own velocity. Needs the midpoint. */
+void setStartVelocity(Body& body, bool impact);
+
+/** @brief State, base and `body.end` at the end of the step. Needs v_middle. @param v nv, the answer */
+void moveToEnd(Body& body, const VectorIn& v, double dt);
+
+/** @brief Velocity zero at the start as well: the step moves nothing. */
+void stand(Body& body);
+
+/** @brief Bias forces (nv) at mean velocity `v` of the step, in the problem's columns. Writes middle.link_velocity. */
+void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias);
+
+/** @brief Largest speed of a point of the links, bound by sizes [m/s]. Writes middle.link_velocity. */
+double pointSpeed(Body& body, const Eigen::VectorXd& v);
+
+/** @brief Body::speed and speed_change from v_start and v_free, after computeBias at v_start. Uses its scratch. */
+void setSpeeds(Body& body);
 
 /**
  * @brief Generalized force of the wrenches that act at scenario time `now` [s]; those that have expired are removed.

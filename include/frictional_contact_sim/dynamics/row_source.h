@@ -88,6 +88,7 @@ enum class Again
   NO,
   FROM_GUESS,  ///< rows have changed: from the warm start
   FROM_ANSWER,  ///< rows have moved a little: from the last answer
+  FORCES,  ///< f alone is another, and in the problem already: from the last answer
   NEVER  ///< the rows' own law could not be met: the step has failed
 };
 
