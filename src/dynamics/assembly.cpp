@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
+#include "frictional_contact_sim/problem/residual_metric.h"
 
 namespace frictional_contact_sim
 {
@@ -177,6 +179,8 @@ bool StepAssembly::assembleForces(const StepContext& context, int index, const S
   if (context.impact)
   {
     problem_.f.segment(body.v_offset, tree.nv) = -momentum;
+    body.speed = pointSpeed(body, body.v_start);
+    body.speed_change = std::max(VELOCITY_FLOOR, context.dt * context.gravity.norm());  // of the step that follows
     return true;
   }
   momentum += context.dt * body.external;
@@ -188,6 +192,34 @@ bool StepAssembly::assembleForces(const StepContext& context, int index, const S
   predict(context, body, answer);
   problem_.f.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;
   return true;
+}
+
+/** What the residual is measured with, from the bodies that a row touches. */
+LawScale StepAssembly::scaleOf(const SparseRows& rows, int row, const RowUnit& unit, const RowRecord& record) const
+{
+  LawScale scale{unit.unit, unit.reach, 0.0, std::abs(record.base_velocity)};
+  for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
+    if (entry.col() < velocities_)
+    {
+      const Body& body = bodies_[body_of_[entry.col()]];
+      scale.speed_change = std::max(scale.speed_change, body.speed_change);
+      scale.speed = std::max(scale.speed, body.speed);
+    }
+  return scale;
+}
+
+void StepAssembly::setScales()
+{
+  problem_.scales.clear();
+  int row = 0;
+  for (size_t i = 0; i < problem_.laws.size(); ++i)
+  {
+    problem_.scales.push_back(scaleOf(problem_.H, row, sink_.units()[i], sink_.rowRecords()[row]));
+    row += problem_.laws[i].dimension();
+  }
+  problem_.bilateral_scales.clear();
+  for (int k = 0; k < problem_.bilaterals(); ++k)
+    problem_.bilateral_scales.push_back(scaleOf(problem_.G, k, sink_.bilateralUnits()[k], sink_.bilateralRecords()[k]));
 }
 
 int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer)
@@ -205,6 +237,7 @@ int StepAssembly::assembleDynamics(const StepContext& context, const Solution& g
     if (bodies_[b].model.tree.nv > 0 && !assembleForces(context, static_cast<int>(b), answer))
       singular = static_cast<int>(b);
   assembleMass(!context.impact);
+  setScales();
   return singular;
 }
 
@@ -215,6 +248,8 @@ void StepAssembly::clear()
   sink_.clear(velocities_);
   sink_.copyTo(false, problem_);
   problem_.f.setZero(velocities_);
+  problem_.scales.clear();
+  problem_.bilateral_scales.clear();
   for (Body& body : bodies_)
     body.middle.mass_matrix.setIdentity();
   assembleMass(false);

@@ -290,6 +290,12 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   finish(problem.laws, context, value.value(), result);
 }
 
+void Solver::judgeAgain(const IncrementalProblem& problem, SolverResult& result)
+{
+  result.residual = globalResidual(problem, global_, result.solution).value();
+  lawResidual(problem.laws, metric_, result.solution.u, result.solution.r, &result.law_errors);
+}
+
 SolverResult Solver::solve(const DelassusProblem& problem, const Solution* guess)
 {
   SolverResult result;

@@ -99,6 +99,14 @@ public:
   SolverResult solve(const DelassusProblem& problem, const Solution* guess = nullptr);
   SolverResult solve(const IncrementalProblem& problem, const Solution* guess = nullptr);
 
+  /**
+   * @brief E of another answer to the global problem that was solved last, for who changes r after the solve.
+   * @param result its residual, law_errors and solution.u are set anew, nothing else
+   */
+  void judgeAgain(const IncrementalProblem& problem, SolverResult& result);
+  /** @brief What the last global problem was measured with. */
+  const ResidualMetric& metric() const { return global_.metric; }
+
   const std::string& name() const { return name_; }
   /** @brief What the method needs of W. */
   virtual OperatorUse operatorUse() const { return OperatorUse::BLOCK_ROWS; }
