@@ -214,3 +214,32 @@ TEST_F(FclibTest, SharedFilesAreReadAndTheRollingOneRefused)
       EXPECT_NO_THROW(validate(problem.local)) << name;
   }
 }
+
+TEST(FclibTest, ScalesOfASimulationComeBackAndBadOnesAreNamed)
+{
+  RandomProblemOptions options;
+  options.unilateral = 2;
+  options.dry = 1;
+  options.bilaterals = 1;
+  IncrementalProblem problem = randomProblem(options, 4);
+  for (size_t i = 0; i < problem.laws.size(); ++i)
+    problem.scales.push_back(
+        {problem.laws[i].isCoulomb() ? VelocityUnit::LENGTH : VelocityUnit::ANGLE, 0.5 + i, 0.01, 3.0});
+  problem.bilateral_scales.push_back({VelocityUnit::ANGLE, 0.25, 0.01, 3.0});
+  const std::string path = ::testing::TempDir() + "/scales.hdf5";
+  writeFclib(path, problem, {});
+  const IncrementalProblem read = readFclib(path).global;
+  ASSERT_EQ(read.scales.size(), problem.scales.size());
+  for (size_t i = 0; i < read.scales.size(); ++i)
+  {
+    EXPECT_EQ(read.scales[i].reach, problem.scales[i].reach);
+    EXPECT_EQ(read.scales[i].speed_change, 0.01);
+    EXPECT_EQ(read.scales[i].speed, 3.0);
+    const bool threshold = problem.laws[i].type == LawType::DRY_FRICTION;  // written with a velocity of its own
+    EXPECT_EQ(read.scales[i].unit, threshold ? VelocityUnit::SLACK : problem.scales[i].unit);
+  }
+  ASSERT_EQ(read.bilateral_scales.size(), 1u);
+  EXPECT_EQ(read.bilateral_scales[0].reach, 0.25);
+  problem.scales[0].reach = 0.0;
+  EXPECT_THROW(writeFclib(path, problem, {}), std::invalid_argument);
+}

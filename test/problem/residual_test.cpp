@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include "frictional_contact_sim/problem/law_functions.h"
 #include "support/hand_problems.h"
@@ -180,5 +181,103 @@ TEST(ResidualTest, LargestEigenvaluesAgreeWithTheirCharacteristicEquation)
     EXPECT_NEAR(determinant, 0.0, 1e-13 * std::pow(1.0 + lambda, 3));
     EXPECT_GE(shifted(0, 0), -1e-13);
     EXPECT_GE(shifted(0, 0) * shifted(1, 1) - shifted(0, 1) * shifted(1, 0), -1e-13);
+  }
+}
+
+namespace
+{
+/** A mass of 1 kg on a line: between two walls, or pushed on one. */
+DelassusProblem betweenWalls(double q)
+{
+  Eigen::Matrix2d W;
+  W << 1.0, -1.0, -1.0, 1.0;
+  return localProblem(W, Eigen::Vector2d(q, -q), {{LawType::UNILATERAL, 0.0}, {LawType::UNILATERAL, 0.0}});
+}
+}  // namespace
+
+TEST(ResidualTest, SelfStressBuysNothing)
+{
+  // One wall has to stop 1 m/s, r = (1, 0); half of it is missing, u = (-0.5, 0.5). The walls' own stress moves
+  // nothing: e_2 = min(u_2, r_2) is 0.5 m/s as soon as there is some, e_1 is -0.5 m/s always.
+  const DelassusProblem problem = betweenWalls(-1.0);
+  for (const double stress : {0.0, 1.0, 1e4, 1e8})
+    EXPECT_NEAR(evaluateResidual(problem, Eigen::Vector2d(0.5 + stress, stress)), 0.5, 1e-7) << stress;
+}
+
+TEST(ResidualTest, IsNeverReportedBelowTheRoundOffOfTheImpulses)
+{
+  // u = 0 in doubles, whatever it is: r - P(r - u) vanishes. 1e8 m/s of stress against 1 m/s that matters.
+  const DelassusProblem problem = betweenWalls(-1.0);
+  const double eps = std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(evaluateResidual(problem, Eigen::Vector2d(1.0 + 1e8, 1e8)), eps * 1e8, 1e-3 * eps * 1e8);
+  EXPECT_GT(evaluateResidual(problem, Eigen::Vector2d(1.0 + 1e9, 1e9)), 1e-8);
+}
+
+TEST(ResidualTest, IdleRowsDoNotCount)
+{
+  // A limit 0.01 rad away has q = 10 rad/s; the other row closes with 1e-3 rad/s and misses by half of that.
+  Eigen::Matrix2d W;
+  W << 1.0, 0.5, 0.5, 1.0;
+  const std::vector<Law> laws(2, Law{LawType::UNILATERAL, 0.0});
+  EXPECT_NEAR(evaluateResidual(localProblem(W, Eigen::Vector2d(10.0, -1e-3), laws), Eigen::Vector2d(0.0, 0.5e-3)), 0.5,
+              1e-12);
+}
+
+TEST(ResidualTest, RowsOfUnlikeUnitsHaveTheirOwnScales)
+{
+  // A slide of 10 m/s that misses its law by 0.1 m/s and a hinge of 1e-3 rad/s that misses by 8e-3 rad/s.
+  Eigen::Matrix2d W;
+  W << 1.0, 0.1, 0.1, 1.0;
+  DelassusProblem problem =
+      localProblem(W, Eigen::Vector2d(-10.0, 1e-3), {{LawType::DRY_FRICTION, 10.0}, {LawType::DRY_FRICTION, 1.0}});
+  const Eigen::Vector2d r(9.9, -0.999);  // u = (-0.1999, -8e-3), e = (-0.1, -8e-3)
+  const double mixed = evaluateResidual(problem, r);
+  problem.scales = {{VelocityUnit::LENGTH, 1.0, 0.0, 0.0}, {VelocityUnit::ANGLE, 0.5, 0.0, 0.0}};
+  EXPECT_GT(evaluateResidual(problem, r), 10.0 * mixed);
+  // From the bodies' change of speed, 0.2 m/s, at 0.5 m: 0.4 rad/s.
+  problem.scales[0].speed_change = 0.2;
+  ResidualMetric metric = makeMetric(problem);
+  EXPECT_EQ(metric.scales[0], 10.0);
+  EXPECT_EQ(metric.scales[1], 0.4);
+}
+
+TEST(ResidualTest, AnIslandsScaleIsItsOwn)
+{
+  // With the speeds of a simulation, what another island does is nothing to it; bare, 1e-6 of the whole's q is.
+  Eigen::Matrix2d W = Eigen::Matrix2d::Identity();
+  DelassusProblem problem =
+      localProblem(W, Eigen::Vector2d(-1e3, -1e-9), std::vector<Law>(2, Law{LawType::UNILATERAL, 0.0}));
+  EXPECT_EQ(makeMetric(problem).scales, Eigen::Vector2d(1e3, 1e-3));
+  problem.scales.assign(2, {VelocityUnit::LENGTH, 1.0, 1e-2, 0.0});
+  EXPECT_EQ(makeMetric(problem).scales, Eigen::Vector2d(1e3, 1e-2));
+}
+
+TEST(ResidualTest, WhatIsLostInTheSpeedsOfTheBodiesIsZero)
+{
+  // Free fall at 100 m/s: a joint at its limit closes with 1e-15 rad/s, a few eps of what its velocity was taken from.
+  DelassusProblem problem =
+      localProblem(Eigen::MatrixXd::Identity(1, 1), Eigen::VectorXd::Constant(1, -1e-15), {{LawType::UNILATERAL, 0.0}});
+  EXPECT_EQ(evaluateResidual(problem, Eigen::VectorXd::Zero(1)), 1e-15 / VELOCITY_FLOOR);
+  problem.scales = {{VelocityUnit::ANGLE, 0.5, 1e-2, 100.0}};
+  EXPECT_EQ(evaluateResidual(problem, Eigen::VectorXd::Zero(1)), 0.0);
+}
+
+TEST(ResidualTest, AgreesWithTheIndependentValidatorOnScaledProblems)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(0.01, 1.0);
+  for (std::uint32_t seed = 1; seed <= 20; ++seed)
+  {
+    IncrementalProblem problem = everyLaw(seed);
+    for (size_t i = 0; i < problem.laws.size(); ++i)
+      problem.scales.push_back({problem.laws[i].isCoulomb() ? VelocityUnit::LENGTH : static_cast<VelocityUnit>(i % 3),
+                                number(random), number(random), number(random)});
+    for (int k = 0; k < problem.bilaterals(); ++k)
+      problem.bilateral_scales.push_back({VelocityUnit::ANGLE, number(random), 100.0 * number(random), number(random)});
+    const Solution answer = randomAnswer(problem, seed);
+    const GlobalResidual ours = evaluateResidual(problem, answer);
+    const Verdict theirs = validateAnswer(problem, answer.v, answer.r, answer.lambda);
+    EXPECT_NEAR(ours.law, theirs.law, 1e-11 * theirs.law);
+    EXPECT_NEAR(ours.bilateral, theirs.bilateral, 1e-11 * theirs.bilateral);
   }
 }
