@@ -34,14 +34,13 @@ double tangential(const double* x, int dimension)
 }
 
 /**
+ * @param least pivots up to this are none, a row each: not relative to the row of W, which is round-off where bilateral
+ * rows hold it
  * @return whether the matrix, rows x rows, is singular; overwritten. Whole columns are subtracted, no sum waits for
  * itself.
  */
-bool isSingular(double* matrix, int rows, double tolerance)
+bool isSingular(double* matrix, int rows, const double* least)
 {
-  double least[GRAM_ROWS];
-  for (int k = 0; k < rows; ++k)
-    least[k] = tolerance * matrix[k * rows + k];
   for (int k = 0; k < rows; ++k)
   {
     const double* column = matrix + k * rows;
@@ -187,24 +186,22 @@ void LeastNorm::findVelocities(const DelassusReduction& reduction, size_t first,
  */
 bool LeastNorm::standsAlone(const DelassusReduction& reduction, const Member& mine) const
 {
-  double gram[9] = {}, whole[3] = {};
+  double gram[9] = {};
   const double* value = reduction.halfRowValues(mine.law);
   for (const int* column = reduction.halfRowBegin(mine.law); column != reduction.halfRowEnd(mine.law);
        ++column, value += mine.dimension)
   {
+    if (shared_[static_cast<size_t>(*column)] != 0)
+      continue;
     double scaled[3] = {};
     contract(mine, value, 1, scaled);
     for (int a = 0; a < mine.rows; ++a)
-      whole[a] += scaled[a] * scaled[a];
-    if (shared_[static_cast<size_t>(*column)] == 0)
-      for (int a = 0; a < mine.rows; ++a)
-        for (int b = a; b < mine.rows; ++b)
-          gram[a * mine.rows + b] += scaled[a] * scaled[b];
+      for (int b = a; b < mine.rows; ++b)
+        gram[a * mine.rows + b] += scaled[a] * scaled[b];
   }
-  for (int a = 0; a < mine.rows; ++a)
-    if (!(gram[a * mine.rows + a] > OWN_TOLERANCE * whole[a]))
-      return false;
-  return !isSingular(gram, mine.rows, OWN_TOLERANCE);
+  const double least = OWN_TOLERANCE / reduction.stepLengths()[mine.law];
+  const double bounds[3] = {least, least, least};
+  return !isSingular(gram, mine.rows, bounds);
 }
 
 /** One value for every degree of freedom of the member's impulse, from one for every row. */
@@ -273,7 +270,12 @@ bool LeastNorm::isDependent(const DelassusReduction& reduction, size_t first, si
   if (rows > GRAM_ROWS || reduction.problem().W.isMatrixFree())
     return true;
   fillGram(reduction, rows);
-  return isSingular(gram_.data(), rows, RANK_TOLERANCE);
+  double least[GRAM_ROWS];
+  int row = 0;
+  for (const int k : kept_)
+    for (int a = 0; a < members_[static_cast<size_t>(k)].rows; ++a)
+      least[row++] = RANK_TOLERANCE / reduction.stepLengths()[members_[static_cast<size_t>(k)].law];
+  return isSingular(gram_.data(), rows, least);
 }
 
 /** The island in scaled impulses. */
@@ -311,8 +313,10 @@ void LeastNorm::scatter(const DelassusReduction& reduction, size_t first, size_t
     const double root = std::sqrt(reduction.stepLengths()[mine.law]);
     const double* s = dual_->impulse(k - first);
     const bool ray = mine.rows < mine.dimension;
+    // What is not along the ray (a frictionless contact's tangential round-off) is part of the force that is kept.
     for (int c = 0; c < mine.dimension; ++c)
-      solution.r[mine.row + c] = root * (ray ? *s * mine.direction[c] : s[c]);
+      if (!ray || mine.direction[c] != 0.0)
+        solution.r[mine.row + c] = root * (ray ? *s * mine.direction[c] : s[c]);
   }
 }
 

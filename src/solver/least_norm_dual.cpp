@@ -413,7 +413,7 @@ void DualIsland::refine()
 /** Mixes s with s* where its defect asks for it. @return whether s is worth having */
 bool DualIsland::accept()
 {
-  const double allowed = FORCE_TOLERANCE * load_ + roundOff();
+  const double allowed = FORCE_TOLERANCE * load_ + 4.0 * roundOff();
   if (!std::isfinite(gap_norm_))
     return false;
   if (gap_norm_ > allowed)
@@ -421,6 +421,7 @@ bool DualIsland::accept()
     const double share = allowed / gap_norm_;
     if (share < LEAST_SHARE)
       return false;
+    optimal_ = false;
     for (size_t k = 0; k < s_.size(); ++k)
       s_[k] = s_star_[k] + share * (s_[k] - s_star_[k]);
   }
@@ -474,6 +475,7 @@ DualIsland::Outcome DualIsland::solve(bool exact)
         refine();
       if (accept())
         return Outcome::CHANGED;
+      optimal_ = false;
     }
   }
   s_ = s_star_;
