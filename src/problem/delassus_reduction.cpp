@@ -245,13 +245,14 @@ void DelassusReduction::recover(const IncrementalProblem& problem, Solution& sol
   solution.u.resize(problem.rows());
   solution.u.noalias() = problem.H * solution.v;
   solution.u += problem.w;
-  solution.lambda.setZero(problem.bilaterals());
-  if (!loop_of_.empty())
-    recoverMultipliers(problem, solution);
+  recoverMultipliers(problem, solution);
 }
 
 void DelassusReduction::recoverMultipliers(const IncrementalProblem& problem, Solution& solution)
 {
+  solution.lambda.setZero(problem.bilaterals());
+  if (loop_of_.empty())
+    return;
   // g - Z^T r with the Z before projection
   momentum_.noalias() = problem.H.transpose() * solution.r;
   momentum_ = problem.f - momentum_;

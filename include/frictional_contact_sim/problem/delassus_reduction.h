@@ -41,6 +41,15 @@ public:
   /** @brief Fills v, u = H v + w and lambda from solution.r. */
   void recover(const IncrementalProblem& problem, Solution& solution);
 
+  /** @brief The least-norm lambda of solution.r alone; v and u are left as they are. Part of recover(). */
+  void recoverMultipliers(const IncrementalProblem& problem, Solution& solution);
+  /** @brief Index in x of a velocity of the problem. */
+  int permuted(int velocity) const { return factor_.permuted(velocity); }
+  /** @brief Velocities in x that a law's rows of Z N touch, ascending, and their values, dimension() a velocity. */
+  const int* halfRowBegin(int law) const { return pattern_.data() + pattern_begin_[static_cast<size_t>(law)]; }
+  const int* halfRowEnd(int law) const { return pattern_.data() + pattern_begin_[static_cast<size_t>(law) + 1]; }
+  const double* halfRowValues(int law) const { return half_rows_.data() + value_begin_[static_cast<size_t>(law)]; }
+
   /** @brief Number of independent bilateral rows found. */
   int bilateralRank() const { return rank_; }
   /** @brief rho_i = 1/lambda_max(W_ii) of W = H M^-1 H^T, without the bilaterals; what the residual is measured with.
@@ -78,7 +87,6 @@ private:
   void multiplyPairs();
   void factorLoops(const IncrementalProblem& problem);
   void projectHalfRows();
-  void recoverMultipliers(const IncrementalProblem& problem, Solution& solution);
 
   MassFactor factor_;
   DelassusProblem local_;

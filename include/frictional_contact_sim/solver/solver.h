@@ -113,6 +113,8 @@ public:
   /** @brief The stopping rule, changeable between calls. */
   void setStopping(const StoppingOptions& stopping);
   const StoppingOptions& stopping() const { return stopping_; }
+  /** @brief The reduction of the last global problem, for what comes after its solve (solver/least_norm.h). */
+  DelassusReduction& reduction() { return *reduction_; }
 
 protected:
   /**
