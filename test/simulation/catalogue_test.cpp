@@ -7,9 +7,11 @@
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 constexpr double DEGREE = 3.14159265358979323846 / 180.0;
@@ -25,7 +27,7 @@ TEST(BilliardBallTest, EndsWithTwoSeventhsOfItsSlipLess)
   BodySpec& ball = addBody(scene, "ball", sphereUrdf(radius, 0.17), poseAt(0.0, 0.0, radius));
   ball.linear_velocity = v0;
   ball.angular_velocity = w0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   while (simulator.time() < 1.5 * 2.0 * slip.norm() / (7.0 * mu * GRAVITY))
     simulator.step();
   const Eigen::Vector3d expected = v0 - 2.0 / 7.0 * slip;
@@ -43,7 +45,7 @@ TEST(BilliardBallTest, SlidesOnAParabola)
   BodySpec& ball = addBody(scene, "ball", sphereUrdf(radius, 0.17), poseAt(0.0, 0.0, radius));
   ball.linear_velocity = v0;
   ball.angular_velocity = w0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 100; ++i)
     simulator.step();
   // The slip keeps its direction, so the friction force is constant and the midpoint rule exact.
@@ -58,7 +60,7 @@ TEST(SpinningDiscTest, StopsAfterTheTimeOfItsRimFriction)
   const double w0 = 10.0;
   Scenario scene = groundScene(mu);
   addBody(scene, "disc", cylinderUrdf(radius, 0.05, 1.0), poseAt(0.0, 0.0, 0.025)).angular_velocity.z() = w0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double stopped = 0.0;
   while (simulator.time() < 0.5)
   {
@@ -77,7 +79,7 @@ TEST(RollingTest, CylinderOnInclineRollsWithTwoThirdsOfTheSlope)
   incline(scene, angle);
   BodySpec& cylinder = addBody(scene, "cylinder", cylinderUrdf(0.1, 0.4, 1.0), poseAt(0.0, 0.0, 0.1));
   cylinder.pose->linear() = Eigen::AngleAxisd(90.0 * DEGREE, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 100; ++i)
     simulator.step();
   EXPECT_NEAR(simulator.velocity(0)[0] / 0.1, 2.0 / 3.0 * GRAVITY * std::sin(angle), 1e-9);
@@ -105,7 +107,7 @@ TEST(RodImpactTest, ImpulseIsThatOfTheEffectiveMass)
     BodySpec& rod = addBody(scene, "rod", rodUrdf(radius), poseAt(0.0, 0.0, 0.5 * std::sin(angle) + radius));
     rod.pose->linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
     rod.linear_velocity.z() = -v0;
-    const Simulator simulator(scene);
+    const AuditedSimulator simulator(scene);
     const double expected = (1.0 + e) * v0 / (1.0 + 3.0 * std::cos(angle) * std::cos(angle));
     // The contact lies 1e-9 m below the rod's axis; the inertia is given with six digits.
     EXPECT_NEAR(simulator.velocity(0)[2] + v0, expected, 1e-5) << angle / DEGREE;
@@ -137,7 +139,7 @@ double kaneLevinsonRatio(double restitution, double mu)
   Scenario scene = groundScene(mu, restitution);
   scene.ground->height = -std::cos(upper) - std::cos(lower) - radius;
   scene.bodies.push_back(body);
-  const Simulator simulator(scene);
+  const AuditedSimulator simulator(scene);
   const double before = 0.5 * (4.0 / 3.0 * 0.01 + 1.0 / 3.0 * 0.04 + std::cos(upper - lower) * 0.02);
   return simulator.report().energy.kinetic / before;
 }
@@ -164,7 +166,7 @@ double housnerError(double h)
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
   block.pose->linear() = turn;
   block.pose->translation() = turn * Eigen::Vector3d(-width / 2.0, 0.0, tall / 2.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   // Angular velocities at the upright position follow from the energies before and after; the gap law spreads the
   // impact over two steps, so a rate read off a single step would miss part of it.
   const double upright = 3.0 * GRAVITY * tall / 2.0;
@@ -186,7 +188,7 @@ TEST(RockingBlockTest, LosesTheEnergyOfHousner)
 
 TEST(PinchGraspTest, HeldCubeDoesNotCreep)
 {
-  Simulator simulator(loadScenarioFile(std::string(PROJECT_DIR) + "/config/scenarios/grasp.yaml"));
+  AuditedSimulator simulator(loadScenarioFile(std::string(PROJECT_DIR) + "/config/scenarios/grasp.yaml"));
   double creep = 0.0;
   for (int i = 0; i < 60000; ++i)
   {

@@ -8,9 +8,11 @@
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
 #include "support/allocation_counter.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 constexpr double RADIUS = 0.1;  ///< of the wheels here [m]
@@ -81,7 +83,8 @@ double jointVelocity(const Simulator& simulator, const std::string& joint)
   return simulator.velocity(0)[model.joints[model.findJoint(joint)].v_index];
 }
 
-void run(Simulator& simulator, int steps)
+template <typename AnySimulator>
+void run(AnySimulator& simulator, int steps)
 {
   for (int i = 0; i < steps; ++i)
   {
@@ -101,7 +104,7 @@ TEST_P(PrescribedCreepTest, GivesTheCurvesTraction)
   const double speed = 1.0;
   const CreepTable curve = *creepScene().materials.pairs.at({"plate", "wheel"}).creep;
   const double wanted = GetParam() * curve.creepage.back();
-  Simulator simulator(plateScene(speed, wanted));
+  AuditedSimulator simulator(plateScene(speed, wanted));
   run(simulator, 100);
   const double rim = RADIUS * jointVelocity(simulator, "axle");
   const double slip = jointVelocity(simulator, "drive") - rim + speed;
@@ -122,7 +125,7 @@ TEST(CreepTest, DrivenWheelSettlesAtTheCreepageOfItsTraction)
   Scenario scene = loadScenarioFile(ROOT + "/config/scenarios/rolling_wheel.yaml");
   scene.stopping.tolerance = 1e-13;
   const CreepTable curve = *scene.materials.pairs.at({"ground", "wheel"}).creep;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 300);
   const double rim = RADIUS * jointVelocity(simulator, "axle");
   const double speed = jointVelocity(simulator, "drive");
@@ -147,7 +150,7 @@ TEST(CreepTest, StepSizeDoesNotMatterInTheSteadyState)
     Scenario scene = loadScenarioFile(ROOT + "/config/scenarios/rolling_wheel.yaml");
     scene.stopping.tolerance = 1e-13;
     scene.time_step = dt;
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     run(simulator, 100);
     for (int i = 0; i < 20; ++i)
     {
@@ -168,7 +171,7 @@ TEST(CreepTest, CurvesWithFlatAndConvexPartsAreMetToo)
   scene.stopping.tolerance = 1e-13;
   for (auto& [between, material] : scene.materials.pairs)
     material.creep = table;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 200);
   const double rim = RADIUS * jointVelocity(simulator, "axle");
   const double speed = jointVelocity(simulator, "drive");
@@ -181,7 +184,7 @@ TEST(CreepTest, StartsFromRestAsARollingWheelDoes)
   scene.stopping.tolerance = 1e-13;
   scene.bodies[0].joints.clear();
   scene.bodies[0].wrenches.clear();
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 500);
   // Torque over radius moves fork, wheel, the wheel's turning inertia and the carriage of 0.1 kg; creep costs 1e-4.
   const double mass = LOAD / GRAVITY + 0.1 + 0.01 / (RADIUS * RADIUS);
@@ -194,7 +197,7 @@ TEST(CreepTest, LockedWheelSlidesWithCoulombsFriction)
   Scenario scene = plateScene(1.0, 0.0);
   scene.bodies[0].joints["axle"] = {0.0, 0.0};
   scene.bodies[0].commands["axle"] = driven(0.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 50);
   EXPECT_NEAR(contactForce(simulator).x(), -0.3 * LOAD, 1e-7);
 }
@@ -233,7 +236,7 @@ TEST(CreepTest, SphereRollingOnASphereTransmitsItsCurve)
   lower.joints["axle"] = {0.0, -1.0 / 0.3 * (1.0 - creepage)};
   lower.commands["axle"] = driven(-1.0 / 0.3 * (1.0 - creepage));
   const CreepTable curve = *scene.materials.pairs.at({"plate", "wheel"}).creep;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 50);
   const double rim_a = 0.1 * simulator.velocity(0)[1];
   const double rim_b = -0.3 * simulator.velocity(1)[0];
@@ -268,7 +271,7 @@ TEST(CreepTest, SidewaysTheWheelHoldsAsCoulombSays)
   wrench.link = "holder";
   wrench.force = {-5.0, 8.0, 0.0};
   rig.wrenches.push_back(wrench);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 200);
   EXPECT_NEAR(contactForce(simulator).x(), 5.0, 1e-6);
   EXPECT_NEAR(contactForce(simulator).y(), -8.0, 1e-6);
@@ -285,7 +288,7 @@ TEST(CreepTest, WheelAtRestStaysAtRest)
   push.link = "fork";
   push.force.x() = 14.0;  // friction takes 15 N, and the brake on the axle holds
   scene.bodies[0].wrenches.push_back(push);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 1000);
   // The brake is a damper of 1e8 N m s: 1.4 N m turn it by 1.4e-8 rad/s, and the wheel follows: that is at rest.
   EXPECT_NEAR(jointVelocity(simulator, "drive"), 1.4e-9, 1e-11);
@@ -304,7 +307,7 @@ TEST(CreepTest, OtherPairsKeepTheirBits)
     Scenario scene = loadScenarioFile(ROOT + "/config/scenarios/quadruped.yaml");
     if (with_curve)
       scene.materials.pairs = creepScene().materials.pairs;
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     run(simulator, 300);
     return simulator.stateHash();
   };
@@ -315,7 +318,7 @@ TEST(CreepTest, LawCoulombIsTheDefault)
 {
   Scenario scene = plateScene(1.0, 0.5e-4);
   scene.materials = creepScene("coulomb, friction: 0.3").materials;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   run(simulator, 20);
   EXPECT_NEAR(std::abs(contactForce(simulator).x()), 0.3 * LOAD, 1e-7);  // any prescribed slip is sliding
 }

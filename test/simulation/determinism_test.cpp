@@ -7,9 +7,11 @@
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "support/allocation_counter.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 Scenario quadruped()
@@ -20,7 +22,7 @@ Scenario quadruped()
 /** Hash over the hashes of all steps. */
 std::uint64_t runHash()
 {
-  Simulator simulator(quadruped());
+  AuditedSimulator simulator(quadruped());
   std::uint64_t hash = 0;
   for (int i = 0; i < 1000; ++i)
   {
@@ -58,7 +60,7 @@ TEST(DeterminismTest, LoadOnTheOtherCoresChangesNothing)
 
 TEST(DeterminismTest, ResetRepeatsTheRunAndTimeGoesOn)
 {
-  Simulator simulator(quadruped());
+  AuditedSimulator simulator(quadruped());
   for (int i = 0; i < 200; ++i)
     simulator.step();
   const Eigen::VectorXd first = simulator.position(0);

@@ -2,13 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 double totalEnergy(const Simulator& simulator)
@@ -17,13 +20,13 @@ double totalEnergy(const Simulator& simulator)
 }
 
 /** Greatest heights between bounces of a ball dropped from `height` above contact. */
-std::vector<double> bounceHeights(double restitution, double height, double h, double until, Simulator** last = nullptr)
+std::vector<double> bounceHeights(double restitution, double height, double h, double until,
+                                  std::unique_ptr<AuditedSimulator>* last = nullptr)
 {
-  static std::unique_ptr<Simulator> simulator;
   Scenario scene = groundScene(0.0, restitution);
   scene.time_step = h;
   addBody(scene, "ball", sphereUrdf(0.1, 1.0), poseAt(0.0, 0.0, 0.1 + height));
-  simulator = std::make_unique<Simulator>(scene);
+  auto simulator = std::make_unique<AuditedSimulator>(scene);
   std::vector<double> heights;
   double top = 0.0;
   double old_speed = 0.0;
@@ -40,7 +43,7 @@ std::vector<double> bounceHeights(double restitution, double height, double h, d
     old_speed = speed;
   }
   if (last != nullptr)
-    *last = simulator.get();
+    *last = std::move(simulator);
   return heights;
 }
 
@@ -57,7 +60,7 @@ TEST(BouncingBallTest, HeightsFallByTheSquareOfRestitutionWithOrderOne)
 TEST(BouncingBallTest, EndsAtRestAfterTheSumOfItsFlights)
 {
   const double e = 0.5;
-  Simulator* simulator = nullptr;
+  std::unique_ptr<AuditedSimulator> simulator;
   bounceHeights(e, 0.2, 1e-3, 2.0, &simulator);
   // Rest to round-off: the gap is a difference of numbers of 0.1 m, 1e-17 / dt = 1e-14 m/s.
   const double resting_height = simulator->position(0)[2];
@@ -74,7 +77,7 @@ TEST(BouncingBallTest, KeepsItsEnergyWithRestitutionOne)
 {
   Scenario scene = groundScene(0.0, 1.0);
   addBody(scene, "ball", sphereUrdf(0.1, 1.0), poseAt(0.0, 0.0, 0.3));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   const double energy = totalEnergy(simulator);
   for (int i = 0; i < 5000; ++i)
     simulator.step();
@@ -91,7 +94,7 @@ std::vector<double> cradleSpeeds(double distance, int steps)
   for (int i = 0; i < 3; ++i)
     addBody(scene, "ball" + std::to_string(i), sphereUrdf(0.1, 1.0), poseAt(distance * i, 0.0, 0.0));
   scene.bodies[0].linear_velocity.x() = 1.0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < steps; ++i)
     simulator.step();
   return {simulator.velocity(0)[0], simulator.velocity(1)[0], simulator.velocity(2)[0]};
@@ -118,7 +121,7 @@ TEST(RestingBoxTest, EverySampleOfTheForceIsTheWeight)
   Scenario scene = groundScene(0.8);
   scene.stopping.tolerance = 1e-11;
   addBody(scene, "box", boxUrdf({0.2, 0.3, 0.1}, 10.0), poseAt(0.3, -0.2, 0.05));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 500; ++i)
   {
     simulator.step();
@@ -139,7 +142,7 @@ TEST(RestingBoxTest, WarmStartNeedsNoIterations)
   Scenario scene = groundScene(0.8);
   scene.stopping.tolerance = 1e-8;
   addBody(scene, "box", boxUrdf({0.2, 0.3, 0.1}, 10.0), poseAt(0.3, -0.2, 0.05));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   simulator.step();
   for (int i = 1; i < 2000; ++i)
   {
@@ -153,7 +156,7 @@ TEST(RestingBoxTest, ForcesOfTheFourCornersAreEqual)
   // Hyperstatic: any split along the null space is a solution; the least norm one is the even split.
   Scenario scene = groundScene(0.8);
   addBody(scene, "box", boxUrdf({0.2, 0.3, 0.1}, 10.0), poseAt(0.0, 0.0, 0.05));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 100; ++i)
     simulator.step();
   ASSERT_EQ(simulator.contacts().size(), 4U);
@@ -170,7 +173,7 @@ TEST(DroppedBoxTest, PenetratesNothingAndComesToRest)
   scene.stopping.tolerance = 1e-10;
   BodySpec& box = addBody(scene, "box", boxUrdf({0.2, 0.3, 0.1}, 10.0), poseAt(0.0, 0.0, 0.4));
   box.pose->linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 0.5).normalized()).toRotationMatrix();
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double penetration = 0.0;
   for (int i = 0; i < 2000; ++i)
   {
@@ -191,7 +194,7 @@ TEST(StackTest, TenBoxesHeavyOnLightStandStill)
   for (int i = 0; i < 10; ++i)
     addBody(scene, "box" + std::to_string(i), boxUrdf({0.2, 0.2, 0.2}, i == 9 ? 1000.0 : 1.0),
             poseAt(0.0, 0.0, 0.1 + 0.2 * i));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double weight = 0.0;
   for (int i = 0; i < 200; ++i)
   {
@@ -210,7 +213,7 @@ TEST(EnergyTest, FrictionDissipatesWhatTheBlockLoses)
 {
   Scenario scene = groundScene(0.4);
   addBody(scene, "block", boxUrdf({0.4, 0.4, 0.1}, 2.0), poseAt(0.0, 0.0, 0.05)).linear_velocity.x() = 1.0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 400; ++i)
     simulator.step();
   const EnergyLedger& energy = simulator.report().energy;

@@ -7,9 +7,11 @@
 
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 /** A slider of mass 2 kg along x on a fixed base, with the given joint elements; no collision shapes. */
@@ -56,7 +58,7 @@ TEST(EffortTest, AcceleratesTheSliderExactly)
 {
   Scenario scene = sliderScene(WIDE);
   scene.bodies[0].commands["rail"] = effort(3.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 1000; ++i)
     simulator.step();
   EXPECT_NEAR(simulator.velocity(0)[0], 3.0 / MASS, 1e-12);
@@ -68,7 +70,7 @@ TEST(EffortTest, IsCutAtTheLimitOfTheUrdf)
 {
   Scenario scene = sliderScene("<limit lower='-10' upper='10' effort='5' velocity='100'/>");
   scene.bodies[0].commands["rail"] = effort(-80.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   simulator.step();
   EXPECT_EQ(simulator.effort(0, 1), -5.0);
   EXPECT_NEAR(simulator.velocity(0)[0], -5.0 / MASS * 1e-3, 1e-15);
@@ -81,7 +83,7 @@ double springError(double h)
   scene.time_step = h;
   scene.bodies[0].joints["rail"].position = 0.1;
   scene.bodies[0].commands["rail"] = servo(0.0, 200.0, 0.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double error = 0.0;
   while (simulator.time() < 1.0)
   {
@@ -105,7 +107,7 @@ TEST(ServoTest, AnyStiffnessIsStable)
   Scenario scene = sliderScene("<limit lower='-10' upper='10' effort='1e12' velocity='100'/>");
   scene.bodies[0].joints["rail"].position = 0.1;
   scene.bodies[0].commands["rail"] = servo(0.0, 1e12, 1e5);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 2000; ++i)
     simulator.step();
   EXPECT_LE(std::abs(simulator.position(0)[0]), 0.1 * (1.0 + 1e-9));
@@ -118,7 +120,7 @@ TEST(ServoTest, HoldsItsTargetUnderDefaultGains)
   command.mode = JointCommand::Mode::POSITION;
   command.target = 0.3;
   scene.bodies[0].commands["rail"] = command;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 1000; ++i)
     simulator.step();
   EXPECT_NEAR(simulator.position(0)[0], 0.3, 1e-9);
@@ -128,7 +130,7 @@ TEST(ServoTest, AtItsEffortLimitIsAConstantForce)
 {
   Scenario scene = sliderScene("<limit lower='-10' upper='10' effort='4' velocity='100'/>");
   scene.bodies[0].commands["rail"] = servo(5.0, 1000.0, 1.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 500; ++i)
   {
     simulator.step();
@@ -141,7 +143,7 @@ TEST(ServoTest, LeavesItsEffortLimitAgain)
 {
   Scenario scene = sliderScene("<limit lower='-10' upper='10' effort='4' velocity='100'/>");
   scene.bodies[0].commands["rail"] = servo(0.2, 200.0, 40.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 4000; ++i)
   {
     simulator.step();
@@ -156,7 +158,7 @@ TEST(JointLimitTest, StopsTheSliderAndHoldsIt)
 {
   Scenario scene = sliderScene("<limit lower='-0.2' upper='0.1' effort='1000' velocity='100'/>");
   scene.bodies[0].commands["rail"] = effort(6.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 1000; ++i)
   {
     simulator.step();
@@ -171,7 +173,7 @@ TEST(JointDampingTest, SlowsTheSliderExponentially)
   // Damping at the end of the step: v_k+1 = v_k / (1 + dt d/m), first order in dt.
   Scenario scene = sliderScene(std::string(WIDE) + "<dynamics damping='0.5'/>");
   scene.bodies[0].joints["rail"].velocity = 1.0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 1000; ++i)
     simulator.step();
   EXPECT_NEAR(simulator.velocity(0)[0], std::pow(1.0 + 1e-3 * 0.5 / MASS, -1000.0), 1e-12);
@@ -183,7 +185,7 @@ TEST(JointDryFrictionTest, HoldsBelowItsThresholdAndMovesAbove)
   {
     Scenario scene = sliderScene(std::string(WIDE) + "<dynamics friction='1.5'/>");
     scene.bodies[0].commands["rail"] = effort(1.5 * factor);
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     for (int i = 0; i < 1000; ++i)
       simulator.step();
     if (factor < 1.0)
@@ -201,7 +203,7 @@ TEST(JointDryFrictionTest, OscillatorLosesTwiceTheDeadBandPerHalfCycle)
   scene.time_step = 1e-4;
   scene.bodies[0].joints["rail"].position = 0.1;
   scene.bodies[0].commands["rail"] = servo(0.0, stiffness, 0.0);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double lowest = 0.1;
   for (int i = 0; i < 4000; ++i)
   {
@@ -232,7 +234,7 @@ TEST(MimicTest, FollowerKeepsItsRatioUnderLoad)
   body.urdf_xml = urdf;
   body.commands["ja"] = effort(2.6);
   scene.bodies.push_back(body);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 1000; ++i)
     simulator.step();
   // Effective mass of the pair: 1 + 3 * 2^2 = 13 kg.
@@ -268,7 +270,7 @@ TEST(MimicTest, ChainsStartClosedWhateverTheOrderInTheFile)
     scene.bodies[0].name = "fan";
     scene.bodies[0].urdf_xml = urdf + "</robot>";
     scene.bodies[0].joints["a"] = {0.5, 0.3};
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     const double rates[4] = {0.3, 0.6, -0.6, -0.3};
     for (int j = 0; j < 4; ++j)
     {

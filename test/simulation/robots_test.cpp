@@ -9,9 +9,11 @@
 
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 const std::string SHARED_ROBOTS = std::string(PROJECT_DIR) + "/../shared/robots";
@@ -60,7 +62,7 @@ TEST_P(RobotTest, RunsTwoSecondsWithoutAFailedStep)
   body.base = robot.base;
   body.hold_initial_position = robot.hold;
   scene.bodies.push_back(body);
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double speed = 0.0;
   double worst_force = 0.0;
   for (int i = 0; i < 2000; ++i)

@@ -5,15 +5,17 @@
 
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/audited_simulator.h"
 
 namespace frictional_contact_sim
 {
+using test_support::AuditedSimulator;
 namespace
 {
 constexpr double PI = 3.14159265358979323846;
 
 /** Runs until the body moves no more; returns the time of the first step that ends at rest. */
-double runToRest(Simulator& simulator, double limit)
+double runToRest(AuditedSimulator& simulator, double limit)
 {
   while (simulator.time() < limit)
   {
@@ -33,7 +35,7 @@ TEST(SlidingBlockTest, StopsAfterTheTimeAndDistanceOfCoulombsLaw)
   const double h = 1e-3;
   Scenario scene = groundScene(mu);
   addBody(scene, "block", boxUrdf({0.4, 0.4, 0.1}, 2.0), poseAt(0.0, 0.0, 0.05)).linear_velocity.x() = v0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   const double time = runToRest(simulator, 1.0);
   EXPECT_NEAR(time, v0 / (mu * GRAVITY), h);
   // The last step is cut short: its mean velocity is half the old one, an error of at most mu g h^2 / 8.
@@ -44,7 +46,7 @@ TEST(SlidingBlockTest, FastCubeDoesNotLiftOff)
 {
   Scenario scene = groundScene(0.5);
   addBody(scene, "cube", boxUrdf({0.1, 0.1, 0.1}, 1.0), poseAt(0.0, 0.0, 0.05)).linear_velocity.x() = 6.0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   double lift = 0.0;
   double time = 0.0;
   while (simulator.time() < 1.5)
@@ -65,7 +67,7 @@ double inclineSpeed(double mu, double angle)
   Scenario scene = groundScene(mu);
   incline(scene, angle);
   addBody(scene, "block", boxUrdf({0.4, 0.4, 0.1}, 2.0), poseAt(0.0, 0.0, 0.05));
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 100; ++i)
     simulator.step();
   return simulator.velocity(0)[0];
@@ -98,7 +100,7 @@ TEST(ConeIsotropyTest, FrictionOpposesSlidingEquallyInEveryHeading)
     const Eigen::Vector2d direction(std::cos(heading), std::sin(heading));
     Scenario scene = groundScene(mu);
     addBody(scene, "disc", cylinderUrdf(0.3, 0.1, mass), poseAt(0.0, 0.0, 0.05)).linear_velocity.head<2>() = direction;
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     simulator.step();
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (const ContactState& contact : simulator.contacts())
@@ -122,7 +124,7 @@ bool tips(double width, double height, double mu)
   push.point.z() = height - tall / 2.0;
   block.wrenches.push_back(push);
   block.linear_velocity.x() = 0.1;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   for (int i = 0; i < 200; ++i)
     simulator.step();
   return std::abs(simulator.velocity(0)[4]) > 1e-7;
@@ -144,7 +146,7 @@ TEST(ThrownSphereTest, RollsWithFiveSeventhsOfItsSpeed)
   const double v0 = 2.0;
   Scenario scene = groundScene(mu);
   addBody(scene, "ball", sphereUrdf(radius, 1.5), poseAt(0.0, 0.0, radius)).linear_velocity.x() = v0;
-  Simulator simulator(scene);
+  AuditedSimulator simulator(scene);
   const double roll_time = 2.0 * v0 / (7.0 * mu * GRAVITY);
   double rolls_since = 0.0;
   while (simulator.time() < 2.0 * roll_time)
@@ -168,7 +170,7 @@ TEST(RollingTest, SphereOnInclineRollsWithFiveSeventhsOfTheSlope)
     Scenario scene = groundScene(mu);
     incline(scene, angle);
     addBody(scene, "ball", sphereUrdf(0.2, 1.5), poseAt(0.0, 0.0, 0.2));
-    Simulator simulator(scene);
+    AuditedSimulator simulator(scene);
     for (int i = 0; i < 100; ++i)
       simulator.step();
     const double rolling = 5.0 / 7.0 * GRAVITY * std::sin(angle);

@@ -1,0 +1,64 @@
+#pragma once
+/**
+ * @file known_faults.h
+ * @brief Every fault that a test's run is known to have today, in one place: printed, not failed. A row goes when the
+ * part that is named has landed; nothing else may silence an invariant.
+ */
+#include <string>
+#include <vector>
+
+namespace frictional_contact_sim
+{
+namespace test_support
+{
+struct KnownFault
+{
+  const char* test;  ///< end of GoogleTest's "Suite.Name"
+  const char* kind;  ///< run_audit.h
+  const char* why;
+};
+
+inline const std::vector<KnownFault>& knownFaults()
+{
+  static const char* const SCALE = "E is relative to |r|/rho: weaker than the tolerance says (part 8, scale of E)";
+  static const char* const ROUND_OFF = "q of idle mimic or friction rows is round-off (part 8, scale of E)";
+  static const char* const SOLVER = "no method reaches the tolerance (part 8, scale of E and fallback)";
+  static const char* const GEOMETRY = "the end pose is deeper than the points of the manifold say (part 9)";
+  static const std::vector<KnownFault> table = {
+      {"WhileItFalls/dominoes15", "penetration", GEOMETRY},
+      {"WhileItFalls/capsules12", "penetration", GEOMETRY},
+      {"WhileItFalls/chain10", "penetration", GEOMETRY},
+      {"WhileItFalls/chain10coupled", "penetration", GEOMETRY},
+      {"WhileItFalls/grippers8", "penetration", GEOMETRY},
+      {"WhileItFalls/chain10coupled", "failed", ROUND_OFF},
+      {"WhileItFalls/grippers8", "failed", ROUND_OFF},
+      {"WhileItFalls/boxstack8", "gap", SCALE},
+      {"WhileItFalls/kapla20", "gap", SCALE},
+      {"WhileItFalls/arch15push", "gap", SCALE},
+      {"WhileItFalls/pyramid5", "cone", SCALE},
+      {"WhileItFalls/pyramid5", "friction", SCALE},
+      {"WhileItFalls/pyramid5", "gap", SCALE},
+      {"WhileItFalls/rocks10", "friction", SCALE},
+      {"AFailedStep/go1", "friction", SCALE},
+      {"WhileItFalls/rocks10", "gap", SCALE},
+      {"AFailedStep/go1", "gap", SCALE},
+      {"WhileItFalls/pyramid5", "failed", SOLVER},
+      {"WhileItFalls/spheres30", "failed", SOLVER},
+  };
+  return table;
+}
+
+/** @brief Why a fault is known, or null. */
+inline const char* knownFault(const std::string& test, const std::string& kind)
+{
+  for (const KnownFault& fault : knownFaults())
+  {
+    const std::string end = fault.test;
+    if (test.size() >= end.size() && test.compare(test.size() - end.size(), end.size(), end) == 0 && kind == fault.kind)
+      return fault.why;
+  }
+  return nullptr;
+}
+
+}  // namespace test_support
+}  // namespace frictional_contact_sim
