@@ -219,12 +219,6 @@ void moveToEnd(Body& body, const VectorIn& v, double dt)
   updateEnd(body);
 }
 
-void stand(Body& body)
-{
-  body.state.v.setZero();
-  body.v_start.setZero();
-}
-
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
 {
   if (body.model.free_link)
@@ -264,13 +258,9 @@ void setSpeeds(Body& body)
 void applyWrenches(Body& body, double now)
 {
   body.external.setZero();
-  std::vector<ExternalWrench>& wrenches = body.state.wrenches;
-  wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
-                                [now](const ExternalWrench& wrench) { return now >= wrench.until; }),
-                 wrenches.end());
-  for (const ExternalWrench& wrench : wrenches)
+  for (const ExternalWrench& wrench : body.state.wrenches)
   {
-    if (now < wrench.from)
+    if (now < wrench.from || now >= wrench.until)
       continue;
     const Frame& frame = body.model.tree.frames[wrench.frame];
     const Eigen::Isometry3d pose = body.middle.link_pose[frame.link] * frame.placement;
@@ -278,6 +268,14 @@ void applyWrenches(Body& body, double now)
     addWrench(body.model.tree, body.middle, frame.link, pose * wrench.point, axes * wrench.force, axes * wrench.torque,
               body.external);
   }
+}
+
+void removeExpiredWrenches(Body& body, double now)
+{
+  std::vector<ExternalWrench>& wrenches = body.state.wrenches;
+  wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
+                                [now](const ExternalWrench& wrench) { return now >= wrench.until; }),
+                 wrenches.end());
 }
 
 double servoInertia(const BodyModel& model, const MultibodyData& data, int joint)

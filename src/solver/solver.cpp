@@ -50,6 +50,8 @@ void clear(SolverResult& result)
   result.iterations = 0;
   result.residual = 0.0;
   result.seconds = 0.0;
+  result.work = 0.0;
+  result.free_energy = 0.0;
   result.solver.clear();
   result.tried.clear();
   result.message.clear();
@@ -83,6 +85,7 @@ void StoppingOptions::validate() const
 {
   requireOption(tolerance > 0.0 && std::isfinite(tolerance), "tolerance", tolerance, "a finite number > 0");
   requireOption(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  requireOption(work_per_iteration > 0.0, "work_per_iteration", work_per_iteration, "> 0");
   requireOption(time_limit >= 0.0, "time_limit", time_limit, ">= 0");
 }
 
@@ -119,6 +122,10 @@ SolveContext Solver::begin(SolverResult& result)
   context.deadline = stopping_.time_limit;
   context.tolerance = stopping_.tolerance;
   context.max_iterations = stopping_.max_iterations;
+  work_.spent = 0.0;
+  work_.limit = stopping_.work_per_iteration * std::max(stopping_.max_iterations, 1);
+  context.work = &work_;
+  context.stop = stopping_.stop;
   if (stopping_.record_history)
     context.history = &result.history;
   return context;
@@ -198,7 +205,7 @@ void Solver::checkOperator(bool global) const
         "sparse");
 }
 
-void Solver::judge(double residual, SolverResult& result) const
+void Solver::judge(double residual, const SolveContext& context, SolverResult& result) const
 {
   result.residual = residual;
   if (result.solver.empty())
@@ -215,12 +222,26 @@ void Solver::judge(double residual, SolverResult& result) const
     result.status = SolverStatus::STAGNATED;
     result.message = "the method reported convergence, the residual does not confirm it";
   }
+  if (result.status == SolverStatus::CONVERGED)
+    return;
+  if (context.stopped())
+  {
+    result.status = SolverStatus::STOPPED_BY_USER;
+    result.message = "stopped from outside";
+  }
+  else if (result.status == SolverStatus::TIME_LIMIT && result.work > work_.limit)
+  {
+    result.status = SolverStatus::MAX_ITERATIONS;
+    result.message = "work exhausted: more than " + std::to_string(static_cast<long>(work_.limit)) +
+                     " products with W, inner iterations and factorizations counted";
+  }
 }
 
 /** The answer as it is reported, its u given. */
 void Solver::finish(const std::vector<Law>& laws, const SolveContext& context, double residual, SolverResult& result)
 {
-  judge(residual, result);
+  result.work = std::max(result.work, work_.spent);
+  judge(residual, context, result);
   lawResidual(laws, context.metric, result.solution.u, result.solution.r, &result.law_errors);
   result.seconds = context.seconds();
   if (context.history != nullptr)
@@ -263,6 +284,7 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   checkOperator(true);
   reduction_->compute(problem, stopping_.operator_kind);
   const DelassusProblem& local = reduction_->problem();
+  result.free_energy = reduction_->freeEnergy();
   islands_->islands.find(local.W);
   setMetric(problem, *reduction_, islands_->islands, global_);
   metric_ = global_.metric;

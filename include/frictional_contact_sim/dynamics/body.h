@@ -110,9 +110,6 @@ void setStartVelocity(Body& body, bool impact);
 /** @brief State, base and `body.end` at the end of the step. Needs v_middle. @param v nv, the answer */
 void moveToEnd(Body& body, const VectorIn& v, double dt);
 
-/** @brief Velocity zero at the start as well: the step moves nothing. */
-void stand(Body& body);
-
 /** @brief Bias forces (nv) at mean velocity `v` of the step, in the problem's columns. Writes middle.link_velocity. */
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias);
 
@@ -122,11 +119,11 @@ double pointSpeed(Body& body, const Eigen::VectorXd& v);
 /** @brief Body::speed and speed_change from v_start and v_free, after computeBias at v_start. Uses its scratch. */
 void setSpeeds(Body& body);
 
-/**
- * @brief Generalized force of the wrenches that act at scenario time `now` [s]; those that have expired are removed.
- * Needs body.middle.
- */
+/** @brief Generalized force of the wrenches that act at scenario time `now` [s]. Needs body.middle. */
 void applyWrenches(Body& body, double now);
+
+/** @brief Forgets the wrenches that have expired at scenario time `now` [s]: part of a step that is taken. */
+void removeExpiredWrenches(Body& body, double now);
 
 /** @brief Inertia that a servo of `joint` has to move: its own composite one, plus, on a floating base, the rest of
  *  the body at the distance of the joint's reach (it is the rest that moves when the limb stands on the ground).
