@@ -12,9 +12,9 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Rows whose remainder in the Cholesky factor of A A^T is below this share of them are combinations of the others: a
-/// thousand times the round-off of W.
-constexpr double RANK_TOLERANCE = 1e-12;
+/// Rows whose remainder in the factor of A A^T is below this are combinations of the others. Far above the round-off of
+/// W, which other rows that nearly depend on each other magnify: to look at an independent island costs time, no more.
+constexpr double RANK_TOLERANCE = 1e-9;
 /// The cubic test pays up to here; larger islands are looked at as if they were dependent. One that is not keeps its
 /// r*.
 constexpr int GRAM_ROWS = 96;
