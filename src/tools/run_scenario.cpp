@@ -64,12 +64,13 @@ std::vector<double> list(const Eigen::VectorXd& vector)
   return {vector.data(), vector.data() + vector.size()};
 }
 
-/** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem. */
-void dumpProblem(const fcs::Simulator& simulator, const Options& options)
+/** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem.
+ *  @return its path, or empty */
+std::string dumpProblem(const fcs::Simulator& simulator, const Options& options)
 {
   const fcs::IncrementalProblem& problem = simulator.problem();
   if (problem.rows() == 0)
-    return;
+    return "";
   const fcs::StepSummary& report = simulator.report();
   const std::string& name = simulator.scenario().name;
   const std::string step = std::to_string(report.step);
@@ -83,10 +84,11 @@ void dumpProblem(const fcs::Simulator& simulator, const Options& options)
     fcs::writeFclib(path, fcs::reduce(problem), info);
   else
     fcs::writeFclib(path, problem, info);
+  return path;
 }
 
 /** @return false when the run ends with the outcome: it failed, and the policy is not to go on. */
-bool judge(const fcs::Simulator& simulator, const std::string& what, RunSummary& summary)
+bool judge(const fcs::Simulator& simulator, const Options& options, const std::string& what, RunSummary& summary)
 {
   const fcs::StepOutcome& outcome = simulator.outcome();
   if (outcome.converged() || outcome.status == fcs::SolverStatus::STOPPED_BY_USER)
@@ -95,10 +97,11 @@ bool judge(const fcs::Simulator& simulator, const std::string& what, RunSummary&
   summary.worst_residual = std::max(summary.worst_residual, outcome.residual);
   const fcs::FailurePolicy policy = simulator.failurePolicy();
   summary.ended = policy == fcs::FailurePolicy::STOP || policy == fcs::FailurePolicy::PAUSE;
+  const std::string file = summary.ended && !options.dump.empty() ? dumpProblem(simulator, options) : "";
   if (summary.ended || what == START)
     std::cerr << "run_scenario: " << what << " at " << simulator.time() << " s: " << toString(outcome.status)
               << ", residual " << outcome.residual << ", " << outcome.message
-              << (outcome.fclib_file.empty() ? "" : ", problem in " + outcome.fclib_file)
+              << (file.empty() ? "" : ", problem in " + file)
               << (summary.ended ? "; ended, as failure: {policy: " + std::string(toString(policy)) +
                                       "} says (--on-failure hold or accept goes on)"
                                 : "")
@@ -119,7 +122,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
   RunSummary summary;
   summary.loading_seconds = simulator.loadingSeconds();
   const long total = countSteps(simulator.scenario());
-  bool going = judge(simulator, START, summary);
+  bool going = judge(simulator, options, START, summary);
   std::unique_ptr<fcs::CsvRecorder> recorder;
   if (!options.output.empty())
     recorder = std::make_unique<fcs::CsvRecorder>(options.output);
@@ -131,8 +134,8 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
   {
     const bool taken = simulator.step().taken;
     const fcs::StepSummary& report = simulator.report();
-    going = judge(simulator, "step " + std::to_string(report.step), summary);
-    if (!options.dump.empty() && (summary.steps + 1) % options.dump_every == 0)
+    going = judge(simulator, options, "step " + std::to_string(report.step), summary);
+    if (!options.dump.empty() && !summary.ended && (summary.steps + 1) % options.dump_every == 0)
       dumpProblem(simulator, options);
     if (!taken)
       continue;

@@ -266,7 +266,8 @@ TEST(FailurePolicyTest, AcceptTakesTheBestIterateWhereItsEnergyCheckHoldsElseHol
   {
     return [factor](const DelassusProblem& problem, const SolveContext&, SolverResult& result)
     {
-      // Normal impulses along the normals at once: factor 1 about stops the fall of gravity, far more throws the bodies.
+      // Normal impulses along the normals at once: factor 1 about stops the fall of gravity, far more throws the
+      // bodies.
       for (int i = 0; i < problem.W.blocks(); ++i)
         result.solution.r.segment<3>(problem.W.offset(i)) = Eigen::Vector3d(factor * 0.0025, 0.0, 0.0);
       result.status = SolverStatus::MAX_ITERATIONS;

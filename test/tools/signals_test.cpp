@@ -78,8 +78,8 @@ TEST_F(SignalsTest, FclibSolveWritesItsBestIterate)
   for (const std::string signal : {"INT", "TERM"})
   {
     const std::string output = (folder_ / ("answer_" + signal + ".hdf5")).string();
-    const CommandResult result = runWithSignal(
-        signal, "fclib_solve", squeezed() + ENDLESS + "--solver gauss_seidel --json --output " + output);
+    const CommandResult result =
+        runWithSignal(signal, "fclib_solve", squeezed() + ENDLESS + "--solver gauss_seidel --json --output " + output);
     EXPECT_EQ(result.code, 130) << result.errors;
     EXPECT_EQ(json::parse(result.output)["status"], "STOPPED_BY_USER") << result.output;
     EXPECT_TRUE(fs::exists(output));
@@ -133,10 +133,10 @@ TEST_F(SignalsTest, HoldAndAcceptGoOnAndCountTheFailedSteps)
   for (const std::string policy : {"hold", "accept"})
     for (const bool flag : {false, true})
     {
-      const std::string lines = "solver: {max_iterations: 20}\n" +
-                                (flag ? "" : "failure: {policy: " + policy + ", fallback: false}\n");
-      const CommandResult result = runTool(
-          "run_scenario", press(lines) + " --json --duration 0.1" + (flag ? " --no-fallback --on-failure " + policy : ""));
+      const std::string lines =
+          "solver: {max_iterations: 20}\n" + (flag ? "" : "failure: {policy: " + policy + ", fallback: false}\n");
+      const CommandResult result = runTool("run_scenario", press(lines) + " --json --duration 0.1" +
+                                                               (flag ? " --no-fallback --on-failure " + policy : ""));
       EXPECT_EQ(result.code, 1) << result.errors;
       const json summary = json::parse(result.output);
       EXPECT_EQ(summary["steps"], 100);

@@ -112,8 +112,6 @@ public:
    * @param result its residual, law_errors and solution.u are set anew, nothing else
    */
   void judgeAgain(const IncrementalProblem& problem, SolverResult& result);
-  /** @brief The last global problem's; its factors may be used, it must not be computed anew. */
-  DelassusReduction& reduction() { return *reduction_; }
   /** @brief What the last global problem was measured with. */
   const ResidualMetric& metric() const { return global_.metric; }
 
