@@ -12,6 +12,7 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double LARGEST_PENALTY = 1e6;
+constexpr double SWEEP_WORK = 4.0;  ///< products with matrices of the size of W in a sweep
 
 /// y <- y shortened by `threshold` (to zero at most).
 void softThreshold(double* y, int size, double threshold)
@@ -157,7 +158,7 @@ void Bipotential::doSolve(const DelassusProblem& problem, const SolveContext& co
       result.message = regular ? "the iterates diverged" : "the matrix of the quadratic step is not positive definite";
       return;
     }
-    if (loop.outOfBudget("splitting iterations exhausted"))
+    if (loop.outOfBudget("splitting iterations exhausted", SWEEP_WORK))
       return;
     sweep();
     if ((result.iterations + 1) % options_.balance_interval == 0)

@@ -71,7 +71,7 @@ void CadouxBroyden::doSolve(const DelassusProblem& problem, const SolveContext& 
   if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [&context] { return context.timeIsUp(); };
+  budget.interrupted = [&context] { return context.spend(1.0); };  // a product an inner iteration
   Eigen::VectorXd old_s, old_G, best_F;
   double best = std::numeric_limits<double>::infinity();
   while (!loop.outOfBudget("outer iterations exhausted"))

@@ -43,7 +43,7 @@ void CadouxFixedPoint::doSolve(const DelassusProblem& problem, const SolveContex
   if (loop.record(first_residual, map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [&context] { return context.timeIsUp(); };
+  budget.interrupted = [&context] { return context.spend(1.0); };  // a product an inner iteration
   bool raised = false;
   while (!loop.outOfBudget("outer iterations exhausted"))
   {

@@ -166,7 +166,7 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, const SolveContext& c
   if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
     return;
   ConvexBudget budget;
-  budget.interrupted = [&context] { return context.timeIsUp(); };
+  budget.interrupted = [&context] { return context.spend(1.0); };  // a product an inner iteration
   const auto evaluate = [&](const Eigen::VectorXd& point)
   {
     map_.evaluate(point, loop.innerTolerance(options_.inner_accuracy, map_.size() > 0), budget);
@@ -179,6 +179,7 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, const SolveContext& c
     if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
       return;
     const bool regular = newton_.compute(problem, map_, s_, options_.proximal, step_);
+    context.spend(SolveContext::factorization(problem, newton_.size()));
     fixed_point_ = map_.value();
     double trial_merit = merit;
     bool accepted = false;

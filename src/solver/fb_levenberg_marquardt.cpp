@@ -66,6 +66,7 @@ void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, const SolveCo
   contacts.velocity(z_, c_);
   const double scale = std::max(contacts.freeVelocity().norm(), std::numeric_limits<double>::min());
   double damping = options_.first_damping, increase = 2.0;
+  const double work = SolveContext::factorization(problem, problem.W.rows());
   OuterLoop loop(context, result);
   bool moved = true;
   double merit = 0.0;
@@ -80,7 +81,7 @@ void FbLevenbergMarquardt::doSolve(const DelassusProblem& problem, const SolveCo
       merit = system_.evaluate(c_, z_, 0.0, true);
       steps_.assemble(system_);
     }
-    if (loop.outOfBudget("Levenberg-Marquardt iterations exhausted"))
+    if (loop.outOfBudget("Levenberg-Marquardt iterations exhausted", 2.0 * work))
       return;
     if (damping > LARGEST_DAMPING || !std::isfinite(merit))
     {

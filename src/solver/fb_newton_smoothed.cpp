@@ -64,6 +64,7 @@ bool FbNewtonSmoothed::lineSearch(double alpha, double merit, int halvings)
 bool FbNewtonSmoothed::step(double alpha, double merit)
 {
   steps_.assemble(system_);
+  factorizations_ = 1;
   if (steps_.newton(system_, step_) && lineSearch(alpha, merit, options_.line_search_steps))
     return true;
   if (!options_.least_squares)
@@ -71,6 +72,7 @@ bool FbNewtonSmoothed::step(double alpha, double merit)
   for (double lambda = FIRST_LAMBDA; lambda <= LARGEST_LAMBDA; lambda *= LAMBDA_GROWTH)
   {
     double predicted = 0.0;
+    factorizations_ += 2;  // J' J and its factor
     system_.evaluate(c_, z_, alpha, false);
     if (steps_.leastSquares(system_, lambda, step_, predicted) && lineSearch(alpha, merit, 1))
       return true;
@@ -120,9 +122,10 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, const SolveContex
   start_ = z_;
   const double largest = options_.first_smoothing * contacts.freeVelocity().lpNorm<Eigen::Infinity>();
   const double root_rows = std::sqrt(static_cast<double>(system_.rows()));
+  const double work = SolveContext::factorization(problem, problem.W.rows());
   OuterLoop loop(context, result);
   alpha_ = largest;
-  inner_ = restarts_ = 0;
+  inner_ = restarts_ = factorizations_ = 0;
   stuck_ = false;
   for (result.iterations = 0;; ++result.iterations)
   {
@@ -131,7 +134,7 @@ void FbNewtonSmoothed::doSolve(const DelassusProblem& problem, const SolveContex
     contacts.unscaleVelocity(c_, u_);
     if (loop.record(context.residual(problem, u_, r_), r_))
       return;
-    if (loop.outOfBudget("Newton iterations exhausted"))
+    if (loop.outOfBudget("Newton iterations exhausted", factorizations_ * work))
       return;
     double merit = system_.evaluate(c_, z_, alpha_, true);
     if (!nextSmoothing(largest, root_rows, merit) || !std::isfinite(merit))

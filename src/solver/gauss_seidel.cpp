@@ -122,6 +122,7 @@ void GaussSeidel::doSolve(const DelassusProblem& problem, const SolveContext& co
     }
     const double change = last ? 0.0 : sweep(problem, r);
     result.iterations = last ? k : k + 1;
+    context.spend(1.0);
     const bool check = last || change <= LIKELY * tolerance || (k + 1) % options_.check_interval == 0;
     if (!check && !(problem.W.rows() > LONG_SWEEP_ROWS && context.timeIsUp()))
       continue;

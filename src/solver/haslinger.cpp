@@ -54,7 +54,7 @@ void Haslinger::doSolve(const DelassusProblem& problem, const SolveContext& cont
   if (loop.record(value, r_))
     return;
   ConvexBudget budget;
-  budget.interrupted = [&context] { return context.timeIsUp(); };
+  budget.interrupted = [&context] { return context.spend(1.0); };  // a product an inner iteration
   while (!loop.outOfBudget("outer iterations exhausted"))
   {
     budget.tolerance = loop.innerTolerance(options_.inner_accuracy, frictional) *

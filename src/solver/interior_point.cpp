@@ -53,7 +53,8 @@ bool InteriorPoint::run(const DelassusProblem& problem, const SolveContext& cont
   u_ += convex_.c - problem.q;
   iteration_.start(convex_, guess_, u_, shift);
   double centring = 0.0;
-  while (!loop.outOfBudget("iterations exhausted"))
+  const double work = SolveContext::factorization(problem, problem.W.rows());
+  while (!loop.outOfBudget("iterations exhausted", work))
   {
     const double length = iteration_.step(convex_, centring);
     if (length < SHORTEST_STEP)

@@ -12,6 +12,7 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double LCP_ASKED_AFTER = 1e6;  ///< entries of the tableau changed between two questions of the pivoting
 constexpr double PI = 3.14159265358979323846;
 /// Alignments with the full angle; later ones are damped, for contacts whose slip answers a turn with a larger one.
 constexpr int UNDAMPED = 6;
@@ -231,7 +232,10 @@ void LcpLemke::doSolve(const DelassusProblem& problem, const SolveContext& conte
   angles_.setZero(problem.W.blocks());
   const Eigen::VectorXd scale = context.step_lengths.cwiseSqrt();
   LcpOptions pivoting = options_.pivoting;
-  pivoting.interrupted = [&context] { return context.timeIsUp(); };
+  // Asked once a pivot, or once in ASKED_AFTER changed entries of the tableau where that is later.
+  const double entries = std::max<double>(LCP_ASKED_AFTER, static_cast<double>(size) * size);
+  const double work = entries / std::max(1.0, static_cast<double>(problem.W.rows()) * problem.W.rows());
+  pivoting.interrupted = [&context, work] { return context.spend(work); };
   OuterLoop loop(context, result, options_.alignments + 2);
   for (int k = 0; k <= (spatial ? options_.alignments : 0); ++k)
   {

@@ -39,9 +39,9 @@ void OuterLoop::restart()
   since_ = 0;
 }
 
-bool OuterLoop::outOfBudget(const char* exhausted)
+bool OuterLoop::outOfBudget(const char* exhausted, double products)
 {
-  if (context_.timeIsUp())
+  if (context_.spend(products))
     return stop(SolverStatus::TIME_LIMIT, "time limit reached");
   return result_.iterations >= context_.max_iterations && stop(SolverStatus::MAX_ITERATIONS, exhausted);
 }

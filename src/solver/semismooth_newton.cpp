@@ -215,7 +215,9 @@ SemismoothNewton::Inner SemismoothNewton::solveProximal(const DelassusProblem& p
       return Inner::OUT_OF_BUDGET;
     ++result.iterations;
     history_[history_count_++ % options_.line_search_memory] = merit;
-    if (!direction(problem))
+    const bool regular = direction(problem);
+    context.spend(stepWork(problem));
+    if (!regular)
       return Inner::FAILED;
     // The full step first: where it solves the problem its merit is of no interest.
     full_r_ = r + step_;

@@ -62,10 +62,12 @@ void merge(int first_law, const SolverResult& island, SolverResult& whole)
   }
 }
 
-SolveContext islandContext(const SolveContext& whole, const IslandSlot& slot, double scale, double deadline)
+SolveContext islandContext(const SolveContext& whole, const IslandSlot& slot, double scale, double deadline,
+                           WorkMeter& work)
 {
-  return {slot.step_lengths, scale,    whole.tolerance, whole.max_iterations,   whole.cold_start,
-          whole.start,       deadline, whole.history,   whole.notedIterations()};
+  return {slot.step_lengths,       scale,       whole.tolerance, whole.max_iterations,
+          whole.cold_start,        whole.start, deadline,        whole.history,
+          whole.notedIterations(), &work,       whole.stop};
 }
 }  // namespace
 
@@ -213,7 +215,9 @@ void Solver::solveIslands(const DelassusProblem& problem, const SolveContext& co
     // A time limit is shared by rows, what one island leaves goes to the later ones: a hard one does not starve them.
     const double now = context.deadline > 0.0 ? context.seconds() : 0.0;
     const double share = std::max(context.deadline - now, 0.0) * rows / rows_before;
-    solveIsland(problem, islandContext(context, slot, scale, context.deadline > 0.0 ? now + share : 0.0), slot);
+    WorkMeter meter{0.0, work_.limit};
+    solveIsland(problem, islandContext(context, slot, scale, context.deadline > 0.0 ? now + share : 0.0, meter), slot);
+    result.work = std::max(result.work, meter.spent);
     work.scatter(problem, slot, result.solution.r);
     merge(work.laws.front(), slot.result, result);
   }

@@ -46,6 +46,8 @@ void clear(SolverResult& result)
   result.iterations = 0;
   result.residual = 0.0;
   result.seconds = 0.0;
+  result.work = 0.0;
+  result.free_energy = 0.0;
   result.solver.clear();
   result.tried.clear();
   result.message.clear();
@@ -79,6 +81,7 @@ void StoppingOptions::validate() const
 {
   requireOption(tolerance > 0.0 && std::isfinite(tolerance), "tolerance", tolerance, "a finite number > 0");
   requireOption(max_iterations >= 0, "max_iterations", max_iterations, ">= 0");
+  requireOption(work_per_iteration > 0.0, "work_per_iteration", work_per_iteration, "> 0");
   requireOption(time_limit >= 0.0, "time_limit", time_limit, ">= 0");
 }
 
@@ -115,6 +118,10 @@ SolveContext Solver::begin(SolverResult& result)
   context.deadline = stopping_.time_limit;
   context.tolerance = stopping_.tolerance;
   context.max_iterations = stopping_.max_iterations;
+  work_.spent = 0.0;
+  work_.limit = stopping_.work_per_iteration * std::max(stopping_.max_iterations, 1);
+  context.work = &work_;
+  context.stop = stopping_.stop;
   if (stopping_.record_history)
     context.history = &result.history;
   return context;
@@ -203,7 +210,7 @@ void Solver::checkOperator(bool global) const
         "sparse");
 }
 
-void Solver::judge(const Verdict& verdict, SolverResult& result) const
+void Solver::judge(const Verdict& verdict, const SolveContext& context, SolverResult& result) const
 {
   const double tolerance = stopping_.tolerance;
   result.residual = verdict.residual;
@@ -227,13 +234,27 @@ void Solver::judge(const Verdict& verdict, SolverResult& result) const
     result.status = SolverStatus::STAGNATED;
     result.message = "the method reported convergence, the residual does not confirm it";
   }
+  if (result.status == SolverStatus::CONVERGED)
+    return;
+  if (context.stopped())
+  {
+    result.status = SolverStatus::STOPPED_BY_USER;
+    result.message = "stopped from outside";
+  }
+  else if (result.status == SolverStatus::TIME_LIMIT && result.work > work_.limit)
+  {
+    result.status = SolverStatus::MAX_ITERATIONS;
+    result.message = "work exhausted: more than " + std::to_string(static_cast<long>(work_.limit)) +
+                     " products with W, inner iterations and factorizations counted";
+  }
 }
 
 /** The answer as it is reported, its u given. */
 void Solver::finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict,
                     SolverResult& result)
 {
-  judge(verdict, result);
+  result.work = std::max(result.work, work_.spent);
+  judge(verdict, context, result);
   measureLaws(laws, context.step_lengths, context.free_velocity, result.solution.u, result.solution.r,
               &result.law_errors);
   result.seconds = context.seconds();
@@ -274,6 +295,7 @@ void Solver::solve(const IncrementalProblem& problem, const Solution* guess, Sol
   checkOperator(true);
   reduction_->compute(problem, stopping_.operator_kind);
   const DelassusProblem& local = reduction_->problem();
+  result.free_energy = reduction_->freeEnergy();
   global_.step_lengths = reduction_->stepLengths();
   global_.free_velocity = reduction_->freeVelocity();
   global_.mass_inverse_force = reduction_->massInverseForce();

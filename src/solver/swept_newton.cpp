@@ -103,7 +103,9 @@ void SweptNewton::doSolve(const DelassusProblem& problem, const SolveContext& co
   {
     ++result.iterations;
     evaluate(problem, u_, r, true);
-    const double found = direction(problem) ? sweptStep(problem, context, r) : std::numeric_limits<double>::infinity();
+    const bool regular = direction(problem);
+    context.spend(stepWork(problem));
+    const double found = regular ? sweptStep(problem, context, r) : std::numeric_limits<double>::infinity();
     adapt(found <= options_.sufficient * value);
     if (!(found <= options_.worst * value))
       continue;

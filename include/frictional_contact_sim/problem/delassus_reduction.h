@@ -48,6 +48,8 @@ public:
   const Eigen::VectorXd& stepLengths() const { return step_lengths_; }
   /** @brief Largest entry of w - H M^-1 f, without the bilaterals [m/s]. */
   double freeVelocity() const { return free_velocity_; }
+  /** @brief 1/2 f' M^-1 f, the kinetic energy of the free motion [J]. */
+  double freeEnergy() const { return 0.5 * half_force_.squaredNorm(); }
   /** @brief M^-1 f when there are bilaterals, else empty; the free generalized velocity is its opposite. */
   const Eigen::VectorXd& massInverseForce() const { return mass_inverse_force_; }
 

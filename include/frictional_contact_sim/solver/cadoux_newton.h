@@ -46,6 +46,7 @@ public:
    */
   bool compute(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s, double alpha,
                Eigen::VectorXd& ds);
+  int size() const { return active_; }  ///< of the last system
 
 private:
   void activate(const DelassusProblem& problem, const SlipMap& map);

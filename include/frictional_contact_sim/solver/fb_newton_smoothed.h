@@ -59,6 +59,7 @@ private:
   double alpha_ = 0.0;
   int inner_ = 0;  ///< steps since alpha changed
   int restarts_ = 0;
+  int factorizations_ = 0;  ///< of the last step
   bool stuck_ = false;  ///< the last step found no decrease
 };
 

@@ -33,9 +33,11 @@ public:
   /** @brief Ends with the given status. The best iterate is kept. */
   bool stop(SolverStatus status, const char* message);
 
-  /** @brief True when the iterations or the time are used up, with status and message (`exhausted`, or the time) set.
+  /**
+   * @brief True when the iterations, the work or the time are used up, with status and message (`exhausted`, or the
+   * time) set. @param products with W that the iteration before took
    */
-  bool outOfBudget(const char* exhausted);
+  bool outOfBudget(const char* exhausted, double products = 1.0);
 
   /**
    * @brief Relative tolerance of the next inner problem: accuracy times the last residual, not below tolerance / 10.

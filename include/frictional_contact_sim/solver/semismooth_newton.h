@@ -80,6 +80,11 @@ protected:
   /** @brief step_ from the last evaluation with Jacobians, alpha_ and perturbation_ (0: at the centre, where a small
    * alpha is taken out again). @return false when there is none */
   bool direction(const DelassusProblem& problem);
+  /** @brief Of the last direction [products with W]. */
+  double stepWork(const DelassusProblem& problem) const
+  {
+    return 2.0 + SolveContext::factorization(problem, static_cast<double>(active_.size()));
+  }
   double alpha_ = 0.0;
   Eigen::VectorXd u_, step_, best_r_;
   Eigen::VectorXd rho_normal_, rho_tangential_;  ///< one a law; rho_normal_ is rho_i of one-dimensional ones

@@ -7,6 +7,8 @@
  * tolerance): no solver writes into another one.
  */
 #include <Eigen/Core>
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <vector>
 
@@ -22,6 +24,18 @@ struct HistoryEntry
   double residual = 0.0;  ///< [-]
 };
 
+/**
+ * @brief Work of a solve in products with its W (2 nnz flops each), so that inner iterations and factorizations count
+ * as what they cost; no clock. Of islands each has its own: one does not starve the others, and their sum is the
+ * whole's.
+ */
+struct WorkMeter
+{
+  double spent = 0.0;  ///< [products]
+  double limit = 0.0;  ///< [products], 0 = none
+  bool exhausted() const { return limit > 0.0 && spent > limit; }
+};
+
 struct SolveContext
 {
   const Eigen::VectorXd& step_lengths;  ///< rho_i = 1/lambda_max(W_ii) of the laws, in their order [kg]
@@ -33,9 +47,33 @@ struct SolveContext
   double deadline = 0.0;  ///< seconds after start when time is up, 0 = never
   std::vector<HistoryEntry>* history = nullptr;  ///< where iterates are noted; nullptr = nowhere
   int iterations_before = 0;  ///< made in this solve before the method was called, counted in the history only
+  WorkMeter* work = nullptr;  ///< where work is counted; nullptr = nowhere
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside (a signal): end now; nullptr = never
 
   double seconds() const;
-  bool timeIsUp() const { return deadline > 0.0 && seconds() > deadline; }
+  bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+  /** @brief The solve has to end: clock, work or a wish from outside. Methods say TIME_LIMIT, Solver::solve says which.
+   */
+  bool timeIsUp() const
+  {
+    return (work != nullptr && work->exhausted()) || stopped() || (deadline > 0.0 && seconds() > deadline);
+  }
+  /** @brief Counts work [products with W]. @return timeIsUp() */
+  bool spend(double products) const
+  {
+    if (work != nullptr)
+      work->spent += products;
+    return timeIsUp();
+  }
+  /**
+   * @brief Factorizing `rows` of the problem's rows, as products with W: (2/3 rows^3) / (2 n^2) dense; sparse factors
+   * are cheaper, their fill is not known beforehand, so they count SPARSE_FACTOR at most.
+   */
+  static double factorization(const DelassusProblem& problem, double rows)
+  {
+    const double n = problem.W.rows();
+    return problem.W.isDense() ? rows * rows * rows / (3.0 * n * n) : std::min(rows / 3.0, SPARSE_FACTOR);
+  }
   /**
    * @brief The stopping criterion at (u, r), u = W r + q given; costs no product with W: E of the problem being solved,
    * but impulses count in its scale at most IMPULSE_CAP times as much as velocities. Where no solution exists they run
@@ -52,6 +90,7 @@ struct SolveContext
   int notedIterations() const { return history == nullptr || history->empty() ? 0 : history->back().iteration; }
 
   static constexpr double IMPULSE_CAP = 1e3;
+  static constexpr double SPARSE_FACTOR = 100.0;  ///< [products]
 };
 
 }  // namespace frictional_contact_sim

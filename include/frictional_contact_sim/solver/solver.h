@@ -10,6 +10,7 @@
  * message names the island's first law). One that fails leaves the others their answers. The residual is the whole
  * problem's.
  */
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,17 +36,22 @@ enum class SolverStatus
 /** @brief The constant's name, for messages. */
 const char* toString(SolverStatus status);
 
-/** @brief Stopping rule common to all methods. Budgets count iterations; time_limit is for the tools only. */
+/**
+ * @brief Stopping rule common to all methods. Budgets count iterations and work: max_iterations alone bounds nothing
+ * where an iteration solves a convex problem or factorizes. A clock makes results depend on the load: off by default.
+ */
 struct StoppingOptions
 {
   double tolerance = 1e-8;  ///< on the residual E of problem/residual.h [-], > 0
   int max_iterations = 1000;  ///< outer iterations of the method, >= 0
-  double time_limit =
-      0.0;  ///< wall clock [s], 0 = none (never set inside the simulator: results must not depend on load)
+  double time_limit = 0.0;  ///< wall clock [s], 0 = none
   bool split_islands = true;  ///< solve islands apart; false only to compare
   /// How W is kept. MATRIX_FREE: global problems, methods with operatorUse() == PRODUCTS; W is then never formed.
   OperatorKind operator_kind = OperatorKind::AUTOMATIC;
   bool record_history = false;  ///< fill SolverResult::history; changes no bit of the answer
+  double work_per_iteration = 100.0;  ///< a solve ends after max_iterations times so many products with W, > 0
+  const std::atomic<bool>* stop =
+      nullptr;  ///< when it becomes true the solve ends, STOPPED_BY_USER; outlives the solver
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
@@ -58,6 +64,8 @@ struct SolverResult
   int iterations = 0;
   double residual = 0.0;  ///< E, evaluated by Solver::solve, not by the method
   double seconds = 0.0;  ///< wall-clock time of the call
+  double free_energy = 0.0;  ///< 1/2 f' M^-1 f of a global problem, for problem/energy_check.h [J]
+  double work = 0.0;  ///< [products with W], of the hardest island; see WorkMeter
   std::string solver;  ///< registry name of the method whose answer this is
   std::vector<std::string> tried;  ///< names of the methods run, in order (portfolio)
   std::string message;  ///< why it stopped, one line, empty when converged
@@ -152,12 +160,13 @@ private:
   void solveIslands(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   void solveIsland(const DelassusProblem& whole, const SolveContext& context, IslandSlot& slot);
   void finish(const std::vector<Law>& laws, const SolveContext& context, const Verdict& verdict, SolverResult& result);
-  void judge(const Verdict& verdict, SolverResult& result) const;
+  void judge(const Verdict& verdict, const SolveContext& context, SolverResult& result) const;
   void checkOperator(bool global) const;
   static Verdict measure(const DelassusProblem& problem, const SolveContext& context, const Solution& solution);
 
   std::string name_;
   StoppingOptions stopping_;
+  WorkMeter work_;
   Eigen::VectorXd step_lengths_;  ///< of the local problem being solved
   GlobalResidualData global_;
   Solution warm_;
