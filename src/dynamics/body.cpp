@@ -136,13 +136,9 @@ void moveToMidpoint(Body& body, double dt)
 void applyWrenches(Body& body, double now)
 {
   body.external.setZero();
-  std::vector<ExternalWrench>& wrenches = body.state.wrenches;
-  wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
-                                [now](const ExternalWrench& wrench) { return now >= wrench.until; }),
-                 wrenches.end());
-  for (const ExternalWrench& wrench : wrenches)
+  for (const ExternalWrench& wrench : body.state.wrenches)
   {
-    if (now < wrench.from)
+    if (now < wrench.from || now >= wrench.until)
       continue;
     const Frame& frame = body.model.tree.frames[wrench.frame];
     const Eigen::Isometry3d pose = body.middle.link_pose[frame.link] * frame.placement;
@@ -150,6 +146,14 @@ void applyWrenches(Body& body, double now)
     addWrench(body.model.tree, body.middle, frame.link, pose * wrench.point, axes * wrench.force, axes * wrench.torque,
               body.external);
   }
+}
+
+void removeExpiredWrenches(Body& body, double now)
+{
+  std::vector<ExternalWrench>& wrenches = body.state.wrenches;
+  wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
+                                [now](const ExternalWrench& wrench) { return now >= wrench.until; }),
+                 wrenches.end());
 }
 
 double servoInertia(const BodyModel& model, const MultibodyData& data, int joint)

@@ -104,9 +104,14 @@ void ServoRows::accept(const StepContext& context, const StepAnswer& answer)
   for (const Servo& servo : servos_)
   {
     Body& body = bodies_[servo.body];
-    body.state.drives[servo.joint].effort =
-        servo.bounded ? answer.solution.r[servo.row] / context.dt
-                      : effort(servo, answer.solution.v[body.v_offset + servo.v_index], context.dt);
+    JointDrive& drive = body.state.drives[servo.joint];
+    drive.effort = servo.bounded ? answer.solution.r[servo.row] / context.dt
+                                 : effort(servo, answer.solution.v[body.v_offset + servo.v_index], context.dt);
+    // Of an answer beyond its round-off (1e-9) already; of a step that is held, or accepted without an answer, far.
+    if (servo.impulse.stiffness > 0.0 && std::abs(drive.effort) > drive.effort_limit * (1.0 + EFFORT_TOLERANCE))
+      drive.effort = std::copysign(drive.effort_limit, drive.effort);
+    if (!std::isfinite(drive.effort))
+      drive.effort = 0.0;
   }
 }
 

@@ -23,7 +23,9 @@ std::string uniquePrefix(const std::string& prefix)
 
 void Simulator::Impl::finishStep()
 {
-  ++state.step;
+  state.step += outcome.taken;
+  if (outcome.taken)
+    rememberGood();
   storeReport();
   storeOutcome();
 }
@@ -43,7 +45,7 @@ void Simulator::Impl::storeOutcome()
 void Simulator::Impl::storeReport()
 {
   const IncrementalProblem& problem = assembly.problem();
-  report.step = state.step;
+  report.step = state.step + (outcome.taken ? 0 : 1);
   report.time = state.time();
   report.dt = context.dt;
   report.contacts = static_cast<int>(state.rows.contacts.size());
@@ -66,10 +68,13 @@ void Simulator::Impl::storeReport()
   report.max_penetration = 0.0;
   for (const ContactState& contact : state.rows.contacts)
     report.max_penetration = std::max(report.max_penetration, -contact.gap);
-  bookEnergies();
   EnergyLedger& energy = state.energy;
-  energy.balance_error = energy.kinetic + energy.potential - state.energy_start - energy.actuators + energy.friction +
-                         energy.impact + energy.joints;
+  if (outcome.taken)
+  {
+    bookEnergies();
+    energy.balance_error = energy.kinetic + energy.potential - state.energy_start - energy.actuators + energy.friction +
+                           energy.impact + energy.joints;
+  }
   report.energy = energy;
   report.fclib_file = result.status == SolverStatus::CONVERGED ? "" : outcome.fclib_file;
 }

@@ -331,6 +331,25 @@ void readContactLaw(const YamlReader& law, Scenario& scenario)
   scenario.contact_law = name == "gap" ? ContactLawForm::GAP : ContactLawForm::VELOCITY;
 }
 
+void readFailure(const YamlReader& map, FailureOptions& failure)
+{
+  map.expectMap({"policy", "fallback", "time_limit"});
+  if (map.has("policy"))
+  {
+    try
+    {
+      failure.policy = parseFailurePolicy(map.child("policy").text());
+    }
+    catch (const std::invalid_argument& error)
+    {
+      map.child("policy").fail(error.what());
+    }
+  }
+  if (map.has("fallback"))
+    failure.fallback = map.child("fallback").boolean();
+  readNonNegative(map, "time_limit", failure.time_limit);
+}
+
 void readGround(const YamlReader& map, Scenario& scenario)
 {
   map.expectMap({"friction", "height"});
@@ -344,7 +363,7 @@ void readGround(const YamlReader& map, Scenario& scenario)
 Scenario readScenario(const YamlReader& document)
 {
   document.expectMap({"time_step", "duration", "gravity", "solver", "materials", "ground", "bodies", "loops",
-                      "quasi_static", "contact_law"});
+                      "quasi_static", "contact_law", "failure"});
   Scenario scenario;
   scenario.name = std::filesystem::path(document.file()).stem().string();
   if (document.has("time_step"))
@@ -371,6 +390,8 @@ Scenario readScenario(const YamlReader& document)
   readBodies(document.child("bodies"), scenario);
   if (document.has("contact_law"))
     readContactLaw(document.child("contact_law"), scenario);
+  if (document.has("failure"))
+    readFailure(document.child("failure"), scenario.failure);
   if (document.has("loops") && document.node()["loops"].size() > 0)
     document.child("loops").fail("kinematic loops are not built yet, expected none");
   if (document.has("quasi_static") && document.child("quasi_static").boolean())

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <stdexcept>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
@@ -51,6 +50,16 @@ void checkNumbers(const Simulator& simulator, const SimulationState& state)
 /** The state as it stands in q and v becomes the state: impact solve, warm starts dropped, ledger anew. */
 void Simulator::Impl::applyState()
 {
+  outcome = StepOutcome{};
+  solver.begin();
+  const SimulationState before = state;
+  if (const Body* body = findNotFinite())
+  {
+    fail(SolverStatus::NUMERICAL_FAILURE, "body '" + body->model.name + "': its position or velocity is not finite");
+    storeOutcome();
+    goBack(before);
+    return;
+  }
   state.rows.contacts.clear();
   for (RowMemory& memory : state.rows.memory)
     std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
@@ -61,12 +70,37 @@ void Simulator::Impl::applyState()
   restartReport();
   restartLedger();
   impactSolve();
+  if (!outcome.taken)
+    goBack(before);
+  else
+    rememberGood();
 }
 
-/** Nothing is thrown; where the impact has no finite answer, velocities stay as they are. */
+const Body* Simulator::Impl::findNotFinite() const
+{
+  for (const Body& body : bodies)
+    if (!body.state.q.allFinite() || !body.state.v.allFinite())
+      return &body;
+  return nullptr;
+}
+
+/** All of it as it was before q and v were written. */
+void Simulator::Impl::goBack(const SimulationState& before)
+{
+  outcome.taken = false;
+  state = before;
+  for (size_t b = 0; b < good.size(); ++b)
+  {
+    state.bodies[b].q = good[b].first;
+    state.bodies[b].v = good[b].second;
+  }
+  updateEnds();
+  restartReport();
+}
+
+/** Nothing is thrown; where the impact has no answer the failure policy says what is left. */
 void Simulator::Impl::impactSolve()
 {
-  outcome = StepOutcome{};
   context.impact = true;
   try
   {
@@ -76,16 +110,13 @@ void Simulator::Impl::impactSolve()
   {
     assembly.clear();
     fail(SolverStatus::NUMERICAL_FAILURE, error.what());
-    storeOutcome();
+    finishImpact();
   }
   context.impact = false;
 }
 
 void Simulator::Impl::solveImpact()
 {
-  for (const Body& body : bodies)
-    if (!body.state.q.allFinite() || !body.state.v.allFinite())
-      throw std::invalid_argument("body '" + body.model.name + "': its position or velocity is not finite");
   for (size_t b = 0; b < bodies.size(); ++b)
   {
     Body& body = bodies[b];
@@ -101,18 +132,38 @@ void Simulator::Impl::solveImpact()
     return;
   assembly.makeGuess(context, guess);
   assembly.assembleDynamics(context, guess);
-  solve();
-  if (result.status != SolverStatus::CONVERGED)
+  solver.solve(assembly.problem(), guess, result);
+  finishImpact();
+}
+
+void Simulator::Impl::finishImpact()
+{
+  const bool failed = result.status != SolverStatus::CONVERGED;
+  if (failed && result.status != SolverStatus::STOPPED_BY_USER)
     dumpProblem(state.step == 0 ? "start" : "set_after_step_" + std::to_string(state.step));
   storeOutcome();
-  if (!isMotion(result.solution))
+  const FailurePolicy policy = scenario.failure.policy;
+  outcome.taken = !failed || (result.status != SolverStatus::STOPPED_BY_USER && policy != FailurePolicy::STOP &&
+                              policy != FailurePolicy::PAUSE);
+  if (!outcome.taken)
     return;
-  assembly.setMeanVelocity(result.solution);
-  assembly.book(context, result.solution, state.energy);
+  const bool stands = failed && (policy == FailurePolicy::HOLD || !acceptable());
+  const double kinetic = state.energy.kinetic;
+  if (stands)
+  {
+    standStill();
+  }
+  else
+  {
+    assembly.setMeanVelocity(result.solution);
+    assembly.book(context, result.solution, state.energy);
+  }
   for (Body& body : bodies)
     body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
   updateEnds();
   bookEnergies();
+  if (stands)
+    state.energy.impact += kinetic - state.energy.kinetic;
 }
 
 const StepOutcome& Simulator::setState(const SimulationState& state)
@@ -123,6 +174,7 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
   const double dt = impl_->state.dt;
   impl_->state = state;
   impl_->updateEnds();
+  impl_->rememberGood();
   if (state.dt != dt)
     setTimeStep(dt);
   impl_->restartReport();

@@ -53,9 +53,11 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , bodies(makeBodies(*world, state))
   , context(makeContext(scenario))
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows), state.rows)
-  , solver(createSolver(scenario.solver))
+  , solver(createSolver(scenario.solver), scenario.stopping, scenario.failure)
 {
-  solver->setStopping(scenario.stopping);
+  rememberGood();
+  updateEnds();
+  restartLedger();  // what a start whose impact fails goes back to
   applyState();
   setStart();
 }
@@ -74,6 +76,16 @@ void Simulator::Impl::updateEnds()
 {
   for (Body& body : bodies)
     updateEnd(body);
+}
+
+void Simulator::Impl::rememberGood()
+{
+  good.resize(state.bodies.size());
+  for (size_t b = 0; b < good.size(); ++b)
+  {
+    good[b].first = state.bodies[b].q;
+    good[b].second = state.bodies[b].v;
+  }
 }
 
 void Simulator::Impl::bookEnergies()
@@ -116,6 +128,7 @@ const StepOutcome& Simulator::reset()
   state.energy_start = impl_->start.energy_start;
   state.scenario_clock = StepClock{};
   impl_->updateEnds();
+  impl_->rememberGood();
   impl_->restartReport();
   impl_->outcome = impl_->start_outcome;
   return impl_->outcome;
@@ -284,15 +297,37 @@ void Simulator::clearWrenches()
 
 void Simulator::setSolver(const std::string& name)
 {
-  std::unique_ptr<Solver> solver = createSolver(name);
-  solver->setStopping(impl_->scenario.stopping);
-  impl_->solver = std::move(solver);
-  impl_->scenario.solver = name;
+  setSolver(createSolver(name));
+}
+
+void Simulator::setSolver(std::unique_ptr<Solver> solver)
+{
+  impl_->scenario.solver = solver->name();
+  impl_->solver.setMethod(std::move(solver));
 }
 
 void Simulator::setFailurePolicy(FailurePolicy policy)
 {
-  impl_->policy = policy;
+  FailureOptions options = impl_->scenario.failure;
+  options.policy = policy;
+  setFailureOptions(options);
+}
+
+void Simulator::setFailureOptions(const FailureOptions& options)
+{
+  impl_->scenario.failure = options;
+  impl_->solver.setOptions(options);
+}
+
+FailurePolicy Simulator::failurePolicy() const
+{
+  return impl_->scenario.failure.policy;
+}
+
+void Simulator::setStop(const std::atomic<bool>* stop)
+{
+  impl_->scenario.stopping.stop = stop;
+  impl_->solver.setStop(stop);
 }
 
 void Simulator::setDumpFolder(const std::string& folder, int most)

@@ -2,6 +2,7 @@
 // What a simulator is made of, and the parts of a step; see simulator.h.
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
@@ -9,7 +10,7 @@
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state.h"
 #include "frictional_contact_sim/simulation/world_model.h"
-#include "frictional_contact_sim/solver/solver.h"
+#include "step_solver.h"
 
 namespace frictional_contact_sim
 {
@@ -24,20 +25,24 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
-  /** Finite, and slower than anything that moves. */
-  static bool isMotion(const Solution& solution);
-  void solve();
   void fail(SolverStatus status, const std::string& message);
-  bool handleFailure();  ///< true when the state stands still
+  bool acceptable() const;  ///< whether ACCEPT may take the answer
+  void take();  ///< the answer becomes the state
+  void hold();  ///< in place of take()
+  void standStill();  ///< the answer of a step that is held
+  void rememberGood();
   void storeOutcome();
   void storeReport();
   void dumpProblem(const std::string& when);  ///< problem of a failed solve; its name goes into the outcome
   int countIslands();
 
   void applyState();
+  const Body* findNotFinite() const;
+  void goBack(const SimulationState& before);
   void setStart();
   void impactSolve();
   void solveImpact();
+  void finishImpact();  ///< its answer, or what the failure policy says
   void restartReport();
   void restartLedger();
   void bookEnergies();
@@ -52,12 +57,13 @@ struct Simulator::Impl
   std::vector<Body> bodies;
   StepContext context;
   StepAssembly assembly;
-  std::unique_ptr<Solver> solver;
-  FailurePolicy policy = FailurePolicy::ACCEPT;
+  StepSolver solver;
   std::string dump_folder;
   int dumps_left = 0;
   std::string dump_name;  ///< folder and name that no other simulator of this process uses
 
+  /// q and v of the bodies as the simulator left them: what a bad state from outside goes back to
+  std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> good;
   Solution guess;
   SolverResult result;
   StepOutcome outcome;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 
 #include "frictional_contact_sim/model/kinematics.h"
+#include "frictional_contact_sim/problem/energy_check.h"
 #include "simulator_impl.h"
 
 namespace frictional_contact_sim
@@ -12,13 +12,22 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always in the problem [m]
-constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
+/// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
+/// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
+constexpr int MOST_FAILED_ROUNDS = 2;
+
+/** Whether another round makes sense after a solve. */
+bool mayGoOn(SolverStatus status)
+{
+  return status != SolverStatus::TIME_LIMIT && status != SolverStatus::STOPPED_BY_USER;
+}
 }  // namespace
 
 const StepOutcome& Simulator::step()
 {
   Impl& sim = *impl_;
   sim.outcome.fclib_file.clear();
+  sim.solver.begin();
   try
   {
     sim.moveToMidpoint();
@@ -66,6 +75,7 @@ double Simulator::Impl::lookAhead() const
 void Simulator::Impl::solveStep()
 {
   Again again = Again::NO;
+  int failed_rounds = 0;
   do
   {
     assembly.assembleRows(context);
@@ -79,9 +89,10 @@ void Simulator::Impl::solveStep()
     }
     if (again == Again::FROM_ANSWER && result.solution.r.size() == guess.r.size())
       guess.r = result.solution.r;
-    solve();
+    solver.solve(assembly.problem(), guess, result);
     again = Again::NO;
-    if (isMotion(result.solution))
+    failed_rounds += result.status != SolverStatus::CONVERGED;
+    if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER);
   if (again == Again::NEVER)
@@ -91,68 +102,44 @@ void Simulator::Impl::solveStep()
   }
 }
 
-bool Simulator::Impl::isMotion(const Solution& solution)
-{
-  return solution.r.allFinite() && solution.v.allFinite() && solution.u.allFinite() && solution.lambda.allFinite() &&
-         (solution.v.size() == 0 || solution.v.cwiseAbs().maxCoeff() < RUNAWAY_SPEED);
-}
-
-/** A step without an answer: v is not a number, so that nobody takes it for one. */
+/** A step without an answer. */
 void Simulator::Impl::fail(SolverStatus status, const std::string& message)
 {
-  result.status = status;
-  result.message = message;
-  result.solver.clear();
-  result.tried.clear();
-  result.iterations = 0;
-  result.seconds = 0.0;
-  result.residual = 1.0;
-  result.law_errors.setZero(static_cast<Eigen::Index>(assembly.problem().laws.size()));
-  result.solution.v.setConstant(assembly.problem().velocities(), std::numeric_limits<double>::quiet_NaN());
-  result.solution.u.setZero(assembly.problem().rows());
-  result.solution.r.setZero(assembly.problem().rows());
-  result.solution.lambda.setZero(assembly.problem().bilaterals());
+  setNoAnswer(assembly.problem(), status, message, result);
 }
 
-void Simulator::Impl::solve()
-{
-  // A state that has run away (after accepted failures) overflows here; it must not reach the solver as a NaN.
-  if (!assembly.problem().f.allFinite() || !assembly.problem().w.allFinite())
-  {
-    fail(SolverStatus::NUMERICAL_FAILURE, "forces or velocities have run away");
-    return;
-  }
-  try
-  {
-    solver->solve(assembly.problem(), &guess, result);
-  }
-  catch (const std::exception& error)
-  {
-    fail(SolverStatus::NUMERICAL_FAILURE, error.what());
-    return;
-  }
-  if (!isMotion(result.solution))
-  {
-    result.status = SolverStatus::NUMERICAL_FAILURE;
-    result.message = "the answer is not a motion";
-    result.residual = 1.0;
-  }
-}
-
+/** The step is over: what is left of it is the answer's, or what the failure policy says. */
 void Simulator::Impl::advance()
 {
-  const bool failed = result.status != SolverStatus::CONVERGED;
-  if (failed)
+  outcome.taken = true;
+  if (result.status == SolverStatus::CONVERGED)
+  {
+    take();
+    return;
+  }
+  const bool stopped = result.status == SolverStatus::STOPPED_BY_USER;
+  if (!stopped)
     dumpProblem("step_" + std::to_string(state.step + 1));
-  const bool held = failed && handleFailure();
+  const FailurePolicy policy = scenario.failure.policy;
+  if (stopped || policy == FailurePolicy::STOP || policy == FailurePolicy::PAUSE)
+    outcome.taken = false;  // nothing before this line has written to the state
+  else if (policy == FailurePolicy::ACCEPT && acceptable())
+    take();
+  else
+    hold();
+}
+
+void Simulator::Impl::take()
+{
   assembly.setMeanVelocity(result.solution);
-  if (!held)
-    assembly.book(context, result.solution, state.energy);
+  assembly.book(context, result.solution, state.energy);
+  const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
   for (Body& body : bodies)
   {
     body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
     integrate(body.model.tree, body.state.q, body.v_middle, context.dt, body.state.q);
     body.state.base_pose = basePose(body, context.dt);
+    removeExpiredWrenches(body, middle);
     updateEnd(body);
   }
   assembly.accept(context, {result.solution, result.law_errors});
@@ -160,20 +147,51 @@ void Simulator::Impl::advance()
   ++state.scenario_clock.steps;
 }
 
-/** A step without a converged answer: keep the best iterate, or, where it is not finite or the policy says so, stand.
- */
-bool Simulator::Impl::handleFailure()
+bool Simulator::Impl::acceptable() const
 {
-  if (isMotion(result.solution) && policy != FailurePolicy::HOLD)
-    return false;
+  return isMotion(result.solution) &&
+         checkEnergy(assembly.problem(), result.solution, result.free_energy, context.tolerance).holds();
+}
+
+void Simulator::Impl::standStill()
+{
   result.solution.v.setZero(assembly.problem().velocities());
   result.solution.u.setZero(assembly.problem().rows());
   result.solution.r.setZero(assembly.problem().rows());
   result.solution.lambda.setZero(assembly.problem().bilaterals());
   result.law_errors.setZero();  // of standing still
-  for (Body& body : bodies)
+}
+
+/**
+ * Everything stops where it is; time and prescribed bases go on. The kinetic energy taken is booked as an impact's,
+ * what moving bases do to the potential energy of what they carry as their work.
+ */
+void Simulator::Impl::hold()
+{
+  standStill();
+  bookEnergies();
+  const double kinetic = state.energy.kinetic;
+  const double potential = state.energy.potential;
+  const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
+  for (size_t b = 0; b < bodies.size(); ++b)
+  {
+    Body& body = bodies[b];
+    if (!body.state.q.allFinite())
+      body.state.q = good[b].first;
     body.state.v.setZero();
-  return true;
+    body.state.base_pose = basePose(body, context.dt);
+    removeExpiredWrenches(body, middle);
+    updateEnd(body);
+  }
+  assembly.accept(context, {result.solution, result.law_errors});
+  bookEnergies();
+  if (std::isfinite(kinetic) && std::isfinite(potential))
+  {
+    state.energy.impact += kinetic - state.energy.kinetic;
+    state.energy.actuators += state.energy.potential - potential;
+  }
+  ++state.clock.steps;
+  ++state.scenario_clock.steps;
 }
 
 }  // namespace frictional_contact_sim

@@ -101,6 +101,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"bad_frame", withBody("    wrenches: [{link: a, frame: moon}]\n"), "wrenches[0].frame",
                 "world or link"},
         BadCase{"unknown_material", withBody("    material: rubber\n"), "bodies[0].material", "materials"},
+        BadCase{"unknown_policy", "failure: {policy: explode}\n" + withBody(""), "failure.policy",
+                "stop, pause, hold or accept"},
+        BadCase{"unknown_failure_key", "failure: {polcy: stop}\n" + withBody(""), "polcy", "unknown key"},
+        BadCase{"fallback_is_no_name", "failure: {fallback: admm}\n" + withBody(""), "failure.fallback",
+                "true or false"},
+        BadCase{"negative_time_limit", "failure: {time_limit: -1}\n" + withBody(""), "failure.time_limit", ">= 0"},
+        BadCase{"failure_is_no_word", "failure: stop\n" + withBody(""), "failure", "map"},
         BadCase{"quasi_static", "quasi_static: true\n" + withBody(""), "quasi_static", "not built"}),
     [](const testing::TestParamInfo<BadCase>& info) { return info.param.name; });
 

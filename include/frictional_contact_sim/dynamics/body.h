@@ -90,11 +90,11 @@ void updateEnd(Body& body);
 /** @brief Midpoint q (+) dt/2 v, its poses and mass matrix in `body.middle`. */
 void moveToMidpoint(Body& body, double dt);
 
-/**
- * @brief Generalized force of the wrenches that act at scenario time `now` [s]; those that have expired are removed.
- * Needs body.middle.
- */
+/** @brief Generalized force of the wrenches that act at scenario time `now` [s]. Needs body.middle. */
 void applyWrenches(Body& body, double now);
+
+/** @brief Forgets the wrenches that have expired at scenario time `now` [s]: part of a step that is taken. */
+void removeExpiredWrenches(Body& body, double now);
 
 /** @brief Inertia that a servo of `joint` has to move: its own composite one, plus, on a floating base, the rest of
  *  the body at the distance of the joint's reach (it is the rest that moves when the limb stands on the ground).

@@ -14,7 +14,9 @@ struct EnergyLedger
   double potential = 0.0;  ///< of gravity
   double actuators = 0.0;  ///< work done by commands, servos (springs and dampers), external wrenches
   double friction = 0.0;  ///< dissipated by tangential impulses of contacts; in an impact the sum with `impact` counts
-  double impact = 0.0;  ///< dissipated by the normal impulses of contacts (may be negative: see recovery)
+  /// dissipated by the normal impulses of contacts (may be negative: see recovery); what a failed step under `hold`
+  /// takes by stopping everything is an impact too
+  double impact = 0.0;
   double joints = 0.0;  ///< dissipated by damping, dry friction and limits of joints
   double balance_error = 0.0;  ///< change of kinetic + potential - actuators + all dissipation
 };

@@ -17,6 +17,7 @@
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/simulation/failure.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -62,6 +63,7 @@ struct Scenario
   MaterialTable materials;
   std::optional<GroundSpec> ground;
   std::vector<BodySpec> bodies;
+  FailureOptions failure;
   ContactLawForm contact_law = ContactLawForm::GAP;
 };
 

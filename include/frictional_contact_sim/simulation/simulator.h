@@ -5,6 +5,7 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -21,15 +22,6 @@
 
 namespace frictional_contact_sim
 {
-/** @brief What to do when a step's solve has not converged. */
-enum class FailurePolicy
-{
-  STOP,  ///< the caller ends the run
-  PAUSE,  ///< the caller pauses
-  HOLD,  ///< the state stays as it was before the step (velocities set to zero)
-  ACCEPT  ///< take the best iterate and go on
-};
-
 class Simulator
 {
 public:
@@ -43,8 +35,9 @@ public:
   ~Simulator();
 
   /**
-   * @brief One time step (DESIGN.md, "The time step"). Nothing is thrown: what goes wrong is in the outcome, and the
-   * failure policy says what is left. No allocation after warm-up while contacts persist.
+   * @brief One time step (DESIGN.md, "The time step"), all or nothing: CONVERGED with residual and energy within their
+   * bounds, or another status and a reason, and the failure policy says what is left (simulation/failure.h). Nothing is
+   * thrown. No allocation after warm-up while contacts persist.
    */
   const StepOutcome& step();
   /** @brief The scenario's start again, commands and wrenches too; time and step count go on; the ledger starts anew.
@@ -83,7 +76,10 @@ public:
   Eigen::VectorXd& velocity(int body);
   /** @brief Effort of a joint's drive over the last step, after saturation [N m] or [N]. */
   double effort(int body, int joint) const;
-  /** @brief After a position or velocity was written: impact solve at q (DESIGN.md), warm starts dropped, ledger anew.
+  /**
+   * @brief After a position or velocity was written: impact solve at q (DESIGN.md), warm starts dropped, ledger anew.
+   * Where that fails the failure policy says what is left: under STOP and PAUSE, and whenever a number is not finite,
+   * the state goes back to the one before anything was written.
    */
   const StepOutcome& stateChanged();
 
@@ -100,7 +96,16 @@ public:
 
   /** @throws std::invalid_argument listing the valid names */
   void setSolver(const std::string& name);
+  /** @brief A method that the registry does not have. */
+  void setSolver(std::unique_ptr<Solver> solver);
+  /** @brief From the next step on, in place of the scenario's. */
   void setFailurePolicy(FailurePolicy policy);
+  FailurePolicy failurePolicy() const;
+  /** @brief Policy, fallback and time limit in place of the scenario's. */
+  void setFailureOptions(const FailureOptions& options);
+  /** @brief A solve ends when `stop` becomes true (a signal): STOPPED_BY_USER, the step is not taken. nullptr = never.
+   *  It outlives the simulator. */
+  void setStop(const std::atomic<bool>* stop);
   /** @brief The first `most` problems of failed steps are written here as FCLib files; empty = nowhere. */
   void setDumpFolder(const std::string& folder, int most = 20);
   /** @brief The problem of the last step and its answer (for FCLib files and tests). */

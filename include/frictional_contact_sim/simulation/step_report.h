@@ -19,13 +19,14 @@ struct StepOutcome
   double residual = 0.0;  ///< E of that solve
   std::string message;  ///< why it failed, one line; empty when converged
   std::string fclib_file;  ///< its problem, where a dump folder is set and it failed; else empty
+  bool taken = true;  ///< false: the state is the one before it, to the bit (simulation/failure.h)
   bool converged() const { return status == SolverStatus::CONVERGED; }
 };
 
 /** @brief Not called StepReport: the generated message of that name lives in the same namespace. */
 struct StepSummary
 {
-  std::uint64_t step = 0;  ///< steps since start, never reset
+  std::uint64_t step = 0;  ///< steps since start, never reset; of a step that was not taken the one it would have been
   double time = 0.0;  ///< at the end of the step [s]
   double dt = 0.0;  ///< [s]
   int contacts = 0;
