@@ -176,18 +176,21 @@ void readNumerics(ParameterReader& reader, Scenario& scenario)
   reader.read("max_iterations", scenario.stopping.max_iterations, 1);
 }
 
-void readFailurePolicy(ParameterReader& reader, NodeParameters& parameters)
+/** @brief Overrides the scenario's `failure`, key by key. */
+void readFailure(ParameterReader& reader, FailureOptions& failure)
 {
-  static const std::map<std::string, FailurePolicy> POLICIES = {{"stop", FailurePolicy::STOP},
-                                                                {"pause", FailurePolicy::PAUSE},
-                                                                {"hold", FailurePolicy::HOLD},
-                                                                {"accept", FailurePolicy::ACCEPT}};
-  std::string name = "stop";
+  std::string name = toString(failure.policy);
   reader.read("on_failure", name);
-  const auto policy = POLICIES.find(name);
-  if (policy == POLICIES.end())
+  try
+  {
+    failure.policy = parseFailurePolicy(name);
+  }
+  catch (const std::invalid_argument&)
+  {
     reader.fail("on_failure", "stop, pause, hold or accept");
-  parameters.on_failure = policy->second;
+  }
+  reader.read("fallback", failure.fallback);
+  reader.read("step_time_limit", failure.time_limit, notNegative());
 }
 
 void readServoGains(ParameterReader& reader, NodeParameters& parameters)
@@ -279,7 +282,7 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   for (BodySpec& body : parameters.scenario.bodies)
     body.hold_initial_position = body.hold_initial_position || hold;
   readRates(reader, parameters);
-  readFailurePolicy(reader, parameters);
+  readFailure(reader, parameters.scenario.failure);
   readServoGains(reader, parameters);
   readFiles(reader, parameters);
   reader.read("start_paused", parameters.start_paused);

@@ -46,7 +46,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , publisher_(node, private_node, simulator_, names_, parameters)
   , delivery_(publisher_.losslessTopics())
   , pacer_(parameters.real_time_factor)
-  , failure_lines_(goesOn(parameters.on_failure) ? FAILURE_PERIOD : 0.0)
+  , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
 {
@@ -60,7 +60,6 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
     ROS_WARN_STREAM(warning);
   for (const std::string& joint : names_.unsupported_joints)
     ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
-  simulator_.setFailurePolicy(parameters.on_failure);
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
   setServoGains();
   simulator_.setStart();  // a reset keeps the gains
@@ -215,7 +214,7 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
     while (done < request.n && outcome == Outcome::GO_ON && ros::ok())
     {
       outcome = advance();
-      ++done;
+      done += simulator_.outcome().taken;
     }
     response.success = done == request.n && outcome != Outcome::FAILED && outcome != Outcome::PAUSED;
     if (!response.success)
@@ -244,12 +243,14 @@ void SimulatorNode::reportFailure(const std::string& where)
 /** @brief What the policy makes of the last step, reset or set. @param where of the line that is logged */
 SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 {
+  if (simulator_.outcome().status == SolverStatus::STOPPED_BY_USER)
+    return Outcome::FINISHED;
   if (!simulator_.outcome().converged())
   {
     reportFailure(where);
-    if (parameters_.on_failure == FailurePolicy::STOP)
+    if (simulator_.failurePolicy() == FailurePolicy::STOP)
       return Outcome::FAILED;
-    if (parameters_.on_failure == FailurePolicy::PAUSE)
+    if (simulator_.failurePolicy() == FailurePolicy::PAUSE)
     {
       setPaused(true);
       return Outcome::PAUSED;
@@ -259,10 +260,14 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
   return finished ? Outcome::FINISHED : Outcome::GO_ON;
 }
 
-/** @brief One step, its messages, and whatever keeps them from being lost. */
+/** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
-  simulator_.step();
+  if (!simulator_.step().taken)
+  {
+    publisher_.publishReport(pacer_.realTimeFactor());
+    return judge("step " + std::to_string(simulator_.report().step));
+  }
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_.publish(pacer_.realTimeFactor());

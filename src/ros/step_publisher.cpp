@@ -92,6 +92,14 @@ StepReport StepPublisher::report(double real_time_factor) const
   return report;
 }
 
+void StepPublisher::publishReport(double real_time_factor)
+{
+  if (!listened(step_report_publisher_))
+    return;
+  fillStepReport(simulator_.report(), real_time_factor, toStamp(simulator_.time()), step_report_);
+  step_report_publisher_.publish(step_report_);
+}
+
 void StepPublisher::publishClock(double seconds)
 {
   if (listened(clock_publisher_))
@@ -157,11 +165,7 @@ void StepPublisher::publish(double real_time_factor)
       fillContacts(simulator_, names_, stamp, contacts_);
       contacts_publisher_.publish(contacts_);
     }
-    if (listened(step_report_publisher_))
-    {
-      fillStepReport(simulator_.report(), real_time_factor, stamp, step_report_);
-      step_report_publisher_.publish(step_report_);
-    }
+    publishReport(real_time_factor);
     publishOdometry(stamp);
   }
   if (tf_divider_.due(step))

@@ -5,7 +5,6 @@
  * are done).
  */
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -34,8 +33,6 @@ struct Arguments
   StoppingOptions stopping;
   int repeat = 1;
 };
-
-volatile std::sig_atomic_t interrupted = 0;  ///< Ctrl-C: the rows so far stay, the rest is left
 
 constexpr const char* HEADER =
     "file,kind,dimension,contacts,solver,status,iterations,residual,siconos_error,natural_map_1q,ac_criterion,"
@@ -158,6 +155,7 @@ public:
     {
       StoppingOptions stopping = arguments.stopping;
       stopping.record_history = !arguments.history.empty();
+      stopping.stop = &tools::stop_requested;
       solvers_.push_back(createSolver(name));
       solvers_.back()->setStopping(stopping);
     }
@@ -178,7 +176,7 @@ public:
         long current = done - static_cast<long>(solvers_.size());
         for (const std::unique_ptr<Solver>& solver : solvers_)
         {
-          if (interrupted != 0)
+          if (tools::stop_requested)
             throw std::runtime_error("interrupted");
           solveOne(file, problem, q, *solver);
           progress.update(++current);
@@ -188,8 +186,8 @@ public:
       {
         progress.clear();
         std::cerr << "compare_solvers: " << error.what() << '\n';
-        if (interrupted != 0)
-          return tools::NOT_CONVERGED;
+        if (tools::stop_requested)
+          return tools::INTERRUPTED;
         output_ << field(file) << ",,,,,BAD_INPUT,,,,,,,,," << field(error.what()) << std::endl;
         exit_code_ = tools::BAD_INPUT;
       }
@@ -272,7 +270,7 @@ int run(Arguments& arguments)
   }
   if (!arguments.history.empty())
     prepareHistory(arguments.history, files);
-  std::signal(SIGINT, [](int) { interrupted = 1; });
+  tools::stopOnSignals();
   return comparison.run(files);
 }
 }  // namespace
@@ -284,7 +282,7 @@ int main(int argc, char** argv)
   CLI::App app(
       "Solves FCLib problems with several methods, cold start each, and writes one CSV row a solve. A method that\n"
       "cannot take a problem gets status REFUSED, a file that cannot be read one row BAD_INPUT; the rest goes on.\n"
-      "Exit 0: all converged, 1: a solve did not, 2: bad input.",
+      "Exit 0: all converged, 1: a solve did not, 2: bad input, 130: ended by SIGINT or SIGTERM with the rows done.",
       "compare_solvers");
   app.add_option("FILES", arguments.inputs, "FCLib files, or folders of *.hdf5; never changed")->required();
   app.add_option("--solvers", arguments.solvers, "names separated by commas (default: all; see fclib_solve)")

@@ -88,7 +88,7 @@ void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, So
 {
   WaitingLine waiting(repeat);
   std::vector<double> seconds;
-  for (int k = 0; k < repeat; ++k)
+  for (int k = 0; k < repeat && (k == 0 || !tools::stop_requested); ++k)
   {
     if (problem.kind == FclibKind::LOCAL)
       solver.solve(problem.local, nullptr, result);
@@ -202,6 +202,8 @@ int run(const Arguments& arguments)
   StoppingOptions stopping = arguments.stopping;
   stopping.operator_kind = operatorKind(arguments.operator_name);
   stopping.record_history = !arguments.history.empty();
+  stopping.stop = &tools::stop_requested;
+  tools::stopOnSignals();
   solver->setStopping(stopping);
   const FclibProblem problem = readFclib(arguments.file);
   warnOfAsymmetry(arguments.file, problem);
@@ -213,6 +215,8 @@ int run(const Arguments& arguments)
   writeAnswer(arguments, problem, result);
   writeHistory(arguments, result, history);
   report(arguments, problem, result);
+  if (tools::stop_requested)
+    return tools::INTERRUPTED;
   return result.status == SolverStatus::CONVERGED ? tools::SUCCESS : tools::NOT_CONVERGED;
 }
 }  // namespace
@@ -222,7 +226,8 @@ int main(int argc, char** argv)
   Arguments arguments;
   CLI::App app(
       "Solves a frictional contact problem in FCLib format (local or global, 2D or 3D, with bilaterals).\n"
-      "Exit 0: converged, 1: not converged, 2: bad input.",
+      "Exit 0: converged, 1: not converged, 2: bad input, 130: ended by SIGINT or SIGTERM, the best iterate is "
+      "written.",
       "fclib_solve");
   app.add_option("FILE", arguments.file, "FCLib file (HDF5); never changed");
   app.add_option("--solver", arguments.solver, "method, one of --list-solvers")->capture_default_str();

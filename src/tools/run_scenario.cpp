@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -21,6 +20,7 @@
 #include "tool_support.h"
 
 namespace fcs = frictional_contact_sim;
+using fcs::tools::stop_requested;
 using nlohmann::json;
 
 namespace
@@ -37,6 +37,8 @@ struct Options
   std::string dump;
   int dump_every = 1;
   bool dump_local = false;
+  std::string on_failure;
+  bool no_fallback = false;
   std::string load_state;
   std::string save_state;
 };
@@ -52,21 +54,23 @@ struct RunSummary
   double max_bilateral_violation = 0.0;
   double loading_seconds = 0.0;
   std::uint64_t hash = 0;
+  bool ended = false;  ///< by a failed step, under the policies stop and pause
 };
 
-volatile std::sig_atomic_t interrupted = 0;  ///< Ctrl-C: the files are closed and the summary is of the steps done
+const std::string START = "impact at the start";
 
 std::vector<double> list(const Eigen::VectorXd& vector)
 {
   return {vector.data(), vector.data() + vector.size()};
 }
 
-/** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem. */
-void dumpProblem(const fcs::Simulator& simulator, const Options& options)
+/** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem.
+ *  @return its path, or empty */
+std::string dumpProblem(const fcs::Simulator& simulator, const Options& options)
 {
   const fcs::IncrementalProblem& problem = simulator.problem();
   if (problem.rows() == 0)
-    return;
+    return "";
   const fcs::StepSummary& report = simulator.report();
   const std::string& name = simulator.scenario().name;
   const std::string step = std::to_string(report.step);
@@ -80,22 +84,45 @@ void dumpProblem(const fcs::Simulator& simulator, const Options& options)
     fcs::writeFclib(path, fcs::reduce(problem), info);
   else
     fcs::writeFclib(path, problem, info);
+  return path;
+}
+
+/** @return false when the run ends with the outcome: it failed, and the policy is not to go on. */
+bool judge(const fcs::Simulator& simulator, const Options& options, const std::string& what, RunSummary& summary)
+{
+  const fcs::StepOutcome& outcome = simulator.outcome();
+  if (outcome.converged() || outcome.status == fcs::SolverStatus::STOPPED_BY_USER)
+    return outcome.taken;
+  ++summary.failed_steps;
+  summary.worst_residual = std::max(summary.worst_residual, outcome.residual);
+  const fcs::FailurePolicy policy = simulator.failurePolicy();
+  summary.ended = policy == fcs::FailurePolicy::STOP || policy == fcs::FailurePolicy::PAUSE;
+  const std::string file = summary.ended && !options.dump.empty() ? dumpProblem(simulator, options) : "";
+  if (summary.ended || what == START)
+    std::cerr << "run_scenario: " << what << " at " << simulator.time() << " s: " << toString(outcome.status)
+              << ", residual " << outcome.residual << ", " << outcome.message
+              << (file.empty() ? "" : ", problem in " + file)
+              << (summary.ended ? "; ended, as failure: {policy: " + std::string(toString(policy)) +
+                                      "} says (--on-failure hold or accept goes on)"
+                                : "")
+              << '\n';
+  return !summary.ended;
+}
+
+long countSteps(const fcs::Scenario& scenario)
+{
+  const double count = std::round(scenario.duration / scenario.time_step);
+  if (!(count < 1e12) || (count < 1.0 && scenario.duration > 0.0))
+    throw std::invalid_argument("duration / time_step is " + std::to_string(count) + " steps, expected 1 to 1e12");
+  return static_cast<long>(count);
 }
 
 RunSummary run(fcs::Simulator& simulator, const Options& options)
 {
   RunSummary summary;
   summary.loading_seconds = simulator.loadingSeconds();
-  if (const fcs::StepOutcome& start = simulator.outcome(); !start.converged())
-  {
-    ++summary.failed_steps;
-    std::cerr << "run_scenario: impact at the start: " << toString(start.status) << ", " << start.message << '\n';
-  }
-  const fcs::Scenario& scenario = simulator.scenario();
-  const double count = std::round(scenario.duration / scenario.time_step);
-  if (!(count < 1e12) || (count < 1.0 && scenario.duration > 0.0))
-    throw std::invalid_argument("duration / time_step is " + std::to_string(count) + " steps, expected 1 to 1e12");
-  const auto total = static_cast<long>(count);
+  const long total = countSteps(simulator.scenario());
+  bool going = judge(simulator, options, START, summary);
   std::unique_ptr<fcs::CsvRecorder> recorder;
   if (!options.output.empty())
     recorder = std::make_unique<fcs::CsvRecorder>(options.output);
@@ -103,18 +130,21 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     recorder->record(simulator, false);
   fcs::tools::ProgressBar progress(total);
   const auto start = std::chrono::steady_clock::now();
-  for (; summary.steps < total && interrupted == 0; ++summary.steps)
+  while (going && summary.steps < total && !stop_requested)
   {
-    summary.failed_steps += !simulator.step().converged();
+    const bool taken = simulator.step().taken;
     const fcs::StepSummary& report = simulator.report();
+    going = judge(simulator, options, "step " + std::to_string(report.step), summary);
+    if (!options.dump.empty() && !summary.ended && (summary.steps + 1) % options.dump_every == 0)
+      dumpProblem(simulator, options);
+    if (!taken)
+      continue;
     summary.worst_residual = std::max(summary.worst_residual, report.residual);
     summary.max_penetration = std::max(summary.max_penetration, report.max_penetration);
     summary.max_bilateral_violation = std::max(summary.max_bilateral_violation, report.bilateral_violation);
     if (recorder)
       recorder->record(simulator, true);
-    if (!options.dump.empty() && (summary.steps + 1) % options.dump_every == 0)
-      dumpProblem(simulator, options);
-    if (summary.steps % 100 == 0)
+    if (summary.steps++ % 100 == 0)
       progress.update(summary.steps);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -202,6 +232,10 @@ fcs::Scenario load(const Options& options)
     scenario.time_step = options.time_step;
   if (!options.solver.empty())
     scenario.solver = options.solver;
+  if (!options.on_failure.empty())
+    scenario.failure.policy = fcs::parseFailurePolicy(options.on_failure);
+  scenario.failure.fallback = scenario.failure.fallback && !options.no_fallback;
+  scenario.stopping.stop = &stop_requested;
   return scenario;
 }
 
@@ -212,7 +246,7 @@ int runAll(const Options& options)
     std::filesystem::create_directories(options.dump);
   std::unique_ptr<fcs::Simulator> simulator;
   std::vector<RunSummary> runs;
-  for (int i = 0; i < options.repeat && (i == 0 || interrupted == 0); ++i)
+  for (int i = 0; i < options.repeat && (i == 0 || !stop_requested); ++i)
   {
     simulator = std::make_unique<fcs::Simulator>(scenario);
     if (i == 0)
@@ -229,9 +263,11 @@ int runAll(const Options& options)
   std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
   if (!options.save_state.empty())
     fcs::saveState(*simulator, options.save_state);
-  if (interrupted != 0)
+  if (stop_requested)
     std::cerr << "run_scenario: interrupted after " << median.steps << " steps\n";
-  return median.failed_steps == 0 && interrupted == 0 ? 0 : 1;
+  if (stop_requested)
+    return fcs::tools::INTERRUPTED;
+  return median.failed_steps == 0 ? fcs::tools::SUCCESS : fcs::tools::NOT_CONVERGED;
 }
 }  // namespace
 
@@ -240,13 +276,18 @@ int main(int argc, char** argv)
   Options options;
   CLI::App app(
       "Runs a scenario as fast as it can and prints one JSON object. Exit 0: every step converged, 1: one did "
-      "not, 2: bad input.",
+      "not, 2: bad input, 130: ended by SIGINT or SIGTERM (files and JSON are of the steps done).",
       "run_scenario");
   app.add_option("FILE", options.file, "scenario (YAML)")->required();
   app.add_option("--duration", options.duration, "simulated time instead of the file's [s]")
       ->check(CLI::Range(0.0, 1e9));
   app.add_option("--time-step", options.time_step, "instead of the file's [s]")->check(CLI::Range(1e-9, 1e3));
   app.add_option("--solver", options.solver, "registry name instead of the file's");
+  app.add_option("--on-failure", options.on_failure,
+                 "instead of the file's failure policy: stop (default) and pause end the run at the first failed step "
+                 "with the state before it, hold and accept go on and count them")
+      ->check(CLI::IsMember({"stop", "pause", "hold", "accept"}));
+  app.add_flag("--no-fallback", options.no_fallback, "no other method is tried where the solver fails");
   app.add_option("--output", options.output, "folder for states.csv, joints.csv, contacts.csv, steps.csv");
   app.add_flag("--json", options.json_output, "the JSON object on one line");
   app.add_option("--repeat", options.repeat,
@@ -269,7 +310,7 @@ int main(int argc, char** argv)
   return fcs::tools::runTool(app, argc, argv,
                              [&]
                              {
-                               std::signal(SIGINT, [](int) { interrupted = 1; });
+                               fcs::tools::stopOnSignals();
                                return runAll(options);
                              });
 }

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
@@ -23,6 +25,23 @@ namespace tools
 constexpr int SUCCESS = 0;
 constexpr int NOT_CONVERGED = 1;
 constexpr int BAD_INPUT = 2;
+constexpr int INTERRUPTED = 130;  ///< SIGINT or SIGTERM: what is done is written, as the shell's convention has it
+
+/** @brief Set by the first SIGINT or SIGTERM after stopOnSignals(); a solve that has it ends (StoppingOptions::stop).
+ */
+inline std::atomic<bool> stop_requested{false};
+
+/** @brief A second signal ends the process at once. */
+inline void stopOnSignals()
+{
+  struct sigaction action
+  {
+  };
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
 
 /** @brief CPU time of this thread [s]; does not count what other processes take. */
 inline double threadSeconds()

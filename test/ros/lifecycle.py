@@ -9,6 +9,8 @@ import rospy
 import rostest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import Empty
+from frictional_contact_sim.msg import StepReport
 
 import node_runner
 
@@ -75,6 +77,24 @@ class LifecycleTest(unittest.TestCase):
         self.assertEqual(1, len([line for line in warnings if "~max_dumps" in line]), node.stderr())
         hidden = [int(line.split(": ")[-1]) for line in warnings if "not shown" in line]
         self.assertGreater(len(failures) + sum(hidden), 400, node.stderr())  # it falls for some 15 steps before
+
+    def test_stop_ends_it_with_exit_code_1_and_pause_tries_again(self):
+        hopeless = {"solver": "gauss_seidel", "max_iterations": 1, "tolerance": 1e-30, "real_time_factor": 0.0}
+        node = node_runner.Node(dict(hopeless), node_runner.box_urdf())
+        self.assertEqual(1, node.wait(), node.stderr())
+        self.assertEqual(1, len([line for line in node.lines("WARN") if " step " in line]), node.stderr())
+        reports = []
+        subscriber = rospy.Subscriber(node_runner.NAME + "/step_report", StepReport, reports.append)
+        node = node_runner.Node(dict(hopeless, on_failure="pause", wait_for_subscribers=["~step_report"]),
+                                node_runner.box_urdf())
+        failed = lambda: [report.step for report in reports if report.status != StepReport.CONVERGED]
+        self.assertTrue(node_runner.wait_until(failed), node.stderr())
+        rospy.wait_for_service(node_runner.NAME + "/unpause", node_runner.TIMEOUT)
+        rospy.ServiceProxy(node_runner.NAME + "/unpause", Empty)()
+        self.assertTrue(node_runner.wait_until(lambda: len(failed()) >= 2), node.stderr())
+        self.assertEqual(failed()[0], failed()[1])  # the same step again
+        self.assertEqual(0, node.interrupt(), node.stderr())
+        subscriber.unregister()
 
     def test_interrupt_ends_it_at_once(self):
         for parameters in ({}, {"start_paused": True}, {"real_time_factor": 0.0}):

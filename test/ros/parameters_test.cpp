@@ -71,11 +71,32 @@ TEST(ParametersTest, DefaultsAreThoseOfTheContract)
   EXPECT_EQ(parameters.real_time_factor, 1.0);
   EXPECT_FALSE(parameters.start_paused);
   EXPECT_EQ(parameters.num_steps, 0);
-  EXPECT_EQ(parameters.on_failure, FailurePolicy::STOP);
+  EXPECT_EQ(parameters.scenario.failure.policy, FailurePolicy::STOP);
   ASSERT_EQ(parameters.scenario.bodies.size(), 1u);
   EXPECT_EQ(parameters.scenario.bodies[0].urdf_xml, ROBOT);
   EXPECT_FALSE(parameters.scenario.bodies[0].pose.has_value());
   EXPECT_THAT(parameters.warnings, IsEmpty());
+}
+
+TEST(ParametersTest, FailureParametersOverrideTheScenarioKeyByKey)
+{
+  EXPECT_TRUE(readParameters(XmlRpcValue(), ROBOT).scenario.failure.fallback);
+  EXPECT_EQ(readParameters(XmlRpcValue(), ROBOT).scenario.failure.time_limit, 0.0);
+  const std::string file = testing::TempDir() + "/failure_parameters.yaml";
+  std::ofstream(file) << "failure: {policy: hold, fallback: false, time_limit: 0.5}\nbodies: [{name: block, urdf: "
+                      << PROJECT_DIR << "/urdf/block.urdf}]\n";
+  XmlRpcValue tree;
+  tree["scenario"] = file;
+  FailureOptions failure = readParameters(tree, "").scenario.failure;
+  EXPECT_EQ(failure.policy, FailurePolicy::HOLD);
+  EXPECT_FALSE(failure.fallback);
+  EXPECT_EQ(failure.time_limit, 0.5);
+  tree["on_failure"] = "pause";
+  tree["step_time_limit"] = 2;
+  failure = readParameters(tree, "").scenario.failure;
+  EXPECT_EQ(failure.policy, FailurePolicy::PAUSE);
+  EXPECT_FALSE(failure.fallback);
+  EXPECT_EQ(failure.time_limit, 2.0);
 }
 
 TEST(ParametersTest, EveryRegisteredSolverIsTaken)
@@ -159,6 +180,8 @@ TEST(ParametersTest, ALineNamesParameterAndWhatWasFoundAndExpected)
   EXPECT_THAT(complaint("start_paused", XmlRpcValue(1)), HasSubstr("true or false"));
   EXPECT_THAT(complaint("disable_collisions", names({"a", "b"})), HasSubstr("pairs"));
   EXPECT_THAT(complaint("on_failure", XmlRpcValue("explode")), HasSubstr("stop, pause, hold or accept"));
+  EXPECT_THAT(complaint("fallback", XmlRpcValue(1)), HasSubstr("true or false"));
+  EXPECT_THAT(complaint("step_time_limit", XmlRpcValue(-1.0)), HasSubstr(">= 0"));
   EXPECT_THAT(complaint("max_iterations", XmlRpcValue(0)), HasSubstr(">= 1"));
   EXPECT_THAT(complaint("bag", XmlRpcValue("/nowhere/run.bag")), HasSubstr("/nowhere"));
 }

@@ -76,7 +76,8 @@ TEST_F(RunScenarioDumpTest, WritesEveryNthStepWithTheSameAnswerInBothForms)
 
 TEST_F(RunScenarioDumpTest, IsWrittenThoughTheSolveFails)
 {
-  run("--dump " + folder_.string(), 1, "name: ac_fixed_point, max_iterations: 1, tolerance: 1.0e-14");
+  run("--on-failure accept --no-fallback --dump " + folder_.string(), 1,
+      "name: ac_fixed_point, max_iterations: 1, tolerance: 1.0e-14");
   EXPECT_EQ(files().size(), 12U);
 }
 

@@ -30,8 +30,7 @@ struct ServoGains
 
 struct NodeParameters
 {
-  Scenario scenario;  ///< of ~scenario, or made from robot_description and the parameters
-  FailurePolicy on_failure = FailurePolicy::STOP;
+  Scenario scenario;  ///< of ~scenario, or made from robot_description and the parameters; what they override is in it
   double real_time_factor = 1.0;  ///< simulated over wall-clock time; 0 = as fast as possible
   double publish_rate = 0.0;  ///< of joint_states, contacts, step_report, odometry; 0 = every step [1/s simulated]
   double clock_rate = 0.0;  ///< of /clock; 0 = every step [1/s simulated]

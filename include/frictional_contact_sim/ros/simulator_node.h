@@ -78,7 +78,8 @@ private:
 
 /**
  * @brief The whole program, without main's frame.
- * @return exit code: 0 done or interrupted, 1 a step failed (~on_failure stop), 2 bad input
+ * @return exit code: 0 done or ended by SIGINT or SIGTERM, which end a long solve too, 1 a step failed (~on_failure
+ * stop), 2 bad input
  */
 int runSimulatorNode(int argc, char** argv);
 

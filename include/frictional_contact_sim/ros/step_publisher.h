@@ -38,6 +38,8 @@ public:
                 const NameTable& names, const NodeParameters& parameters);
 
   void publish(double real_time_factor);
+  /** @brief Only ~step_report, of a step that was not taken: nothing else has changed. */
+  void publishReport(double real_time_factor);
   /** @brief Only /clock, for those who come while the simulation pauses. */
   void publishClock(double seconds);
   /** @brief Topics that a recorder gets every message of. */
