@@ -15,7 +15,7 @@ using namespace frictional_contact_sim::test_support;
 
 namespace
 {
-/** 100 contacts on 20 velocities with mu 10 and a w that no motion meets: nothing converges. */
+/** Far more contacts than velocities, mu 10 and a w that no motion meets: nothing converges. */
 IncrementalProblem hopeless(int contacts, int velocities, double friction, double scale, unsigned seed)
 {
   std::mt19937 engine(seed);
@@ -32,8 +32,8 @@ IncrementalProblem hopeless(int contacts, int velocities, double friction, doubl
                       std::vector<Law>(static_cast<size_t>(contacts), {LawType::COULOMB_3D, friction}));
 }
 
-/** What one iteration may take beyond the limit before it is asked: one inner problem's iteration or a few
- *  factorizations of 3 n_c rows (fb_newton_smoothed: 1 + 2 trials of 12 values of lambda at most). */
+/** What one iteration may take beyond the limit before it is asked: some 30 factorizations of 3 n_c rows (the trials of
+ *  lambda in fb_newton_smoothed), or the 1e6 entries of a tableau between two questions of lcp_lemke. */
 double slack(const IncrementalProblem& problem)
 {
   return 30.0 * problem.rows() / 3.0 + 1e6 / problem.rows();
