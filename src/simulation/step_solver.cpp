@@ -12,8 +12,8 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
-/// Other ideas than the default portfolio's first, then methods that it has itself, for whoever chose another method. The
-/// order is a choice by kind of method; it is not measured yet.
+/// Other ideas than the default portfolio's first, then methods that it has itself, for whoever chose another method.
+/// The order is a choice by kind of method; it is not measured yet.
 constexpr const char* FALLBACKS[] = {"interior_point", "cadoux_fixed_point", "ac_newton", "gauss_seidel"};
 /// Of a fallback, in place of StoppingOptions::work_per_iteration where that is more: it succeeds soon or not at all.
 constexpr double FALLBACK_WORK = 10.0;
