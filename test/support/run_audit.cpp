@@ -79,7 +79,12 @@ void RunAudit::beforeStep()
   penetration_->noteSpeeds();
 }
 
-void RunAudit::judge(const char* kind, double excess, const std::string& text)
+void RunAudit::addCheck(const std::string& kind, Check check)
+{
+  checks_.emplace_back(kind, std::move(check));
+}
+
+void RunAudit::judge(const std::string& kind, double excess, const std::string& text)
 {
   if (excess <= 1.0)
     return;
@@ -108,6 +113,12 @@ void RunAudit::afterStep()
     for (const ContactState& contact : simulator_.contacts())
       checkContact(contact);
     checkMomentum();
+    for (const auto& [kind, check] : checks_)
+    {
+      std::string text;
+      const double excess = check(simulator_, text);
+      judge(kind, excess, text);
+    }
   }
   checkEnergy();
   checkRest();
@@ -224,6 +235,13 @@ void RunAudit::checkRest()
         loads += std::abs(simulator_.effort(body, static_cast<int>(j)));
   }
   quiet_ = speed < options_.rest_speed ? quiet_ + 1 : 0;
+  if (quiet_ <= 1)
+  {
+    weighed_ = 0;
+    support_.setZero();
+  }
+  if (quiet_ > 1)  // from the first velocity of rest on
+    checkWeight();
   if (quiet_ <= options_.rest_steps)
     return;
   double force = 0.0;
@@ -232,6 +250,38 @@ void RunAudit::checkRest()
   // A force of nothing but tolerance: in zero gravity the loads are zero.
   judge("self-stress", force / (options_.weights * loads + 1e-6),
         line("a contact force of ", force, " N at rest, loads ", loads, " N"));
+}
+
+/** The mean force over the rest is M (v_end - v_start)/T off the weight: the bound gets tighter as T grows. */
+void RunAudit::checkWeight()
+{
+  double mass = 0.0;
+  bool held = false;
+  for (int body = 0; body < simulator_.bodyCount(); ++body)
+  {
+    const MultibodyModel& model = simulator_.model(body);
+    if ((model.nv > 0 && !isFloating(model)) || !simulator_.state().bodies[body].wrenches.empty())
+      held = true;  // by other things than contacts
+    mass += model.nv > 0 ? model.totalMass() : 0.0;
+  }
+  if (held)
+  {
+    weighed_ = 0;
+    support_.setZero();
+    return;
+  }
+  const auto moves = [&](int shape)
+  { return simulator_.shape(shape).body >= 0 && simulator_.model(simulator_.shape(shape).body).nv > 0; };
+  for (const ContactState& contact : simulator_.contacts())
+    support_ +=
+        (moves(contact.shape_a) ? 1.0 : 0.0) * contact.impulse - (moves(contact.shape_b) ? 1.0 : 0.0) * contact.impulse;
+  if (++weighed_ < options_.rest_steps)
+    return;
+  const double time = weighed_ * simulator_.report().dt;
+  const Eigen::Vector3d error = support_ / time + mass * simulator_.scenario().gravity;
+  // Ten: the centre of mass may be faster than the coordinates.
+  judge("weight", error.norm() / (10.0 * options_.rest_speed * mass / time + 1e-6 * weight_ + 1e-300),
+        line("the mean contact force is ", error.norm(), " N off the weight, ", weight_, " N, over ", time, " s"));
 }
 
 void RunAudit::checkMomentum()
@@ -278,13 +328,19 @@ void RunAudit::checkMomentum()
 
 void RunAudit::checkSingleLink(int body, const Eigen::Vector3d& impulse, double scale)
 {
-  if (!simulator_.state().bodies[body].wrenches.empty())
-    return;
   const MultibodyModel& model = simulator_.model(body);
   const double mass = model.totalMass();
   const double dt = simulator_.report().dt;
-  const Eigen::Vector3d change =
-      mass * (centerVelocity(body) - old_center_velocity_[body] - dt * simulator_.scenario().gravity);
+  Eigen::Vector3d external = mass * dt * simulator_.scenario().gravity;
+  const double middle = simulator_.state().scenario_clock.time(dt) - 0.5 * dt;
+  for (const ExternalWrench& wrench : simulator_.state().bodies[body].wrenches)
+  {
+    if (!wrench.world_frame)
+      return;
+    if (wrench.from <= middle && middle < wrench.until)
+      external += dt * wrench.force;
+  }
+  const Eigen::Vector3d change = mass * (centerVelocity(body) - old_center_velocity_[body]) - external;
   const double error = (change - impulse).norm();
   // Velocities of the centre are differences of those of the origin and of omega x c.
   const double arm = model.links.front().inertia.center.norm();

@@ -14,6 +14,7 @@
  * | balance     | balance error <= 1e-2 of the energy exchanged so far                                           |
  * | rise        | kinetic + potential of undriven bodies above their least so far <= 1e-2 of the energy exchanged |
  * | self-stress | at rest no contact force beyond 3 weights (and the other loads, see `loads`)                   |
+ * | weight      | at rest the mean of all contact forces from outside on floating bodies is -m g                 |
  * | momentum    | each floating body: (M v + f) of its three base coordinates = sum of published impulses; a single
  * link besides: m (c_k+1' - c_k') = dt m g + impulses + external | | gap         | u_N + gap/dt >= 0, and 0 where r_N >
  * 0 (contacts whose normal law is the gap's)                | | friction    | r_T . u_T <= 0 | | cone        | r_N >=
@@ -24,6 +25,7 @@
  * its centre of mass; otherwise the scheme is of order 2 and a bound of that order is asked.
  */
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -66,6 +68,12 @@ public:
   /** @brief Before a step, only where velocities were written by hand since the last one. */
   void beforeStep();
   void afterStep();
+  /**
+   * @brief One more invariant, asked after every converged step: `excess` is what is found over what is allowed (more
+   * than 1 is a fault), `text` says what it is.
+   */
+  using Check = std::function<double(const Simulator& simulator, std::string& text)>;
+  void addCheck(const std::string& kind, Check check);
   /** @brief By kind, the last look at penetrations included. */
   const std::map<std::string, Fault>& finish();
   /** @brief One line a kind: "penetration: 3 times, first at step 120, worst: ...". Empty: everything held. */
@@ -77,6 +85,7 @@ private:
   void checkPenetration();
   void checkEnergy();
   void checkRest();
+  void checkWeight();
   void checkMomentum();
   void checkSingleLink(int body, const Eigen::Vector3d& impulse, double scale);
   double problemSpeed() const;
@@ -85,7 +94,7 @@ private:
   double lightest(const ContactState& contact) const;
   Eigen::Vector3d centerVelocity(int body) const;
   /** @brief Books a fault of `excess` (allowed: 1); a number that is not finite is one. */
-  void judge(const char* kind, double excess, const std::string& text);
+  void judge(const std::string& kind, double excess, const std::string& text);
 
   const Simulator& simulator_;
   AuditOptions options_;
@@ -102,6 +111,9 @@ private:
   double weight_ = 0.0;  ///< of all bodies that move [N]
   double speed_ = 0.0;  ///< what E is relative to, at most: largest speed that the step's free motion asks of a row
   int quiet_ = 0;  ///< steps at rest so far
+  int weighed_ = 0;  ///< of them with nothing but contacts to hold the bodies
+  Eigen::Vector3d support_ = Eigen::Vector3d::Zero();  ///< sum of contact impulses from outside in them [N s]
+  std::vector<std::pair<std::string, Check>> checks_;
 };
 
 }  // namespace test_support
