@@ -86,6 +86,8 @@ private:
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
   void assembleMass(bool with_implicit);
+  LawScale scaleOf(const SparseRows& rows, int row, const RowUnit& unit, const RowRecord& record) const;
+  void setScales();
   void bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record, EnergyLedger& ledger) const;
 
   std::vector<Body>& bodies_;
