@@ -4,8 +4,6 @@
  * @brief Every fault that a test's run is known to have today, in one place: printed, not failed. A row goes when the
  * part that is named has landed; nothing else may silence an invariant.
  */
-#include <algorithm>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -61,28 +59,6 @@ inline const char* knownFault(const std::string& test, const std::string& kind)
       return fault.why;
   }
   return nullptr;
-}
-
-/** @brief Seeds of random_robots_test.cpp with a fault that is known. */
-struct KnownSeeds
-{
-  const char* kind;
-  const char* why;
-  std::vector<std::uint32_t> seeds;
-};
-
-inline const std::vector<KnownSeeds>& knownSeeds()
-{
-  static const std::vector<KnownSeeds> table = {};
-  return table;
-}
-
-inline bool isKnownSeed(const std::string& kind, std::uint32_t seed)
-{
-  for (const KnownSeeds& known : knownSeeds())
-    if (kind == known.kind && std::find(known.seeds.begin(), known.seeds.end(), seed) != known.seeds.end())
-      return true;
-  return false;
 }
 
 }  // namespace test_support
