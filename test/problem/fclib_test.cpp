@@ -215,7 +215,7 @@ TEST_F(FclibTest, SharedFilesAreReadAndTheRollingOneRefused)
   }
 }
 
-TEST(FclibTest, ScalesOfASimulationComeBackAndBadOnesAreNamed)
+TEST_F(FclibTest, ScalesOfASimulationComeBackAndBadOnesAreNamed)
 {
   RandomProblemOptions options;
   options.unilateral = 2;
