@@ -20,7 +20,8 @@ namespace
 CommandResult runWithSignal(const std::string& signal, const std::string& name, const std::string& arguments)
 {
   const fs::path base = fs::temp_directory_path() / ("signals_" + std::to_string(getpid()));
-  const std::string command = "timeout --preserve-status -k 100 -s " + signal + " 2 " + TOOL_DIR + "/" + name + " " +
+  // --foreground: otherwise timeout signals the program and then its group, and a second signal ends it at once.
+  const std::string command = "timeout --foreground --preserve-status -k 100 -s " + signal + " 2 " + TOOL_DIR + "/" + name + " " +
                               arguments + " >" + base.string() + ".out 2>" + base.string() + ".err </dev/null";
   const int status = std::system(command.c_str());
   CommandResult result;
