@@ -153,6 +153,19 @@ struct CollisionWorld::Impl
     collide(model->instances[pair.a].shape, model->instances[pair.b].shape, a_in_b, margin, manifold);
   }
 
+  /// Adds the points of a pair, in the world.
+  void addPair(const ShapePair& pair, double margin)
+  {
+    collidePair(pair, margin);
+    const Eigen::Isometry3d& pose = poses[pair.b];
+    for (int i = 0; i < manifold.count; ++i)
+    {
+      const PairContact& point = manifold.points[i];
+      contacts.push_back({makeId(pair.a, pair.b, point), pair.a, pair.b, pose * point.position,
+                          pose.linear() * point.normal, point.gap});
+    }
+  }
+
   const CollidingBody& body(int index) const
   {
     const std::vector<CollidingBody>& bodies = model->bodies;
@@ -290,16 +303,19 @@ const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
   impl_->updatePairs();
   impl_->contacts.clear();
   for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, margin))
-  {
-    impl_->collidePair(pair, margin);
-    const Eigen::Isometry3d& pose = impl_->poses[pair.b];
-    for (int i = 0; i < impl_->manifold.count; ++i)
-    {
-      const PairContact& point = impl_->manifold.points[i];
-      impl_->contacts.push_back({makeId(pair.a, pair.b, point), pair.a, pair.b, pose * point.position,
-                                 pose.linear() * point.normal, point.gap});
-    }
-  }
+    impl_->addPair(pair, margin);
+  return impl_->contacts;
+}
+
+const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double>& body_margins)
+{
+  impl_->updatePairs();
+  impl_->contacts.clear();
+  const std::vector<ShapeInfo>& infos = impl_->model->infos;
+  const auto marginOf = [&](int handle) { return infos[handle].body < 0 ? 0.0 : body_margins[infos[handle].body]; };
+  const double largest = body_margins.empty() ? 0.0 : *std::max_element(body_margins.begin(), body_margins.end());
+  for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, largest))
+    impl_->addPair(pair, std::max(marginOf(pair.a), marginOf(pair.b)));
   return impl_->contacts;
 }
 

@@ -20,7 +20,7 @@ struct Simulator::Impl
 
   // the step, in this order
   void moveToMidpoint();
-  double lookAhead() const;
+  const std::vector<double>& lookAhead();
   void solveStep();
   void advance();
   void finishStep();
@@ -56,6 +56,7 @@ struct Simulator::Impl
   StepOutcome start_outcome;
   std::vector<Body> bodies;
   StepContext context;
+  std::vector<double> margins;  ///< of the contacts of each body [m]
   StepAssembly assembly;
   StepSolver solver;
   std::string dump_folder;

@@ -57,11 +57,13 @@ void Simulator::Impl::moveToMidpoint()
   }
 }
 
-/** Farther than any point can travel in two steps at the present velocities. */
-double Simulator::Impl::lookAhead() const
+/** A body each: farther than any of its points can travel in two steps at the present velocities. */
+const std::vector<double>& Simulator::Impl::lookAhead()
 {
-  double fastest = 0.0;
+  margins.clear();
   for (const Body& body : bodies)
+  {
+    double fastest = 0.0;
     for (size_t link = 0; link < body.model.tree.links.size(); ++link)
     {
       if (body.model.chains[link].empty() && !body.model.base_motion.active)
@@ -69,7 +71,9 @@ double Simulator::Impl::lookAhead() const
       const Vector6d velocity = pointVelocity(body.end, static_cast<int>(link), body.end.link_pose[link].translation());
       fastest = std::max(fastest, velocity.head<3>().norm() + velocity.tail<3>().norm() * body.model.extents[link]);
     }
-  return MINIMUM_MARGIN + 2.0 * context.dt * fastest;
+    margins.push_back(MINIMUM_MARGIN + 2.0 * context.dt * fastest);
+  }
+  return margins;
 }
 
 void Simulator::Impl::solveStep()
