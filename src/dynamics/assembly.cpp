@@ -195,9 +195,9 @@ bool StepAssembly::assembleForces(const StepContext& context, int index, const S
 }
 
 /** What the residual is measured with, from the bodies that a row touches. */
-LawScale StepAssembly::scaleOf(const SparseRows& rows, int row, const RowUnit& unit, const RowRecord& record) const
+LawScale StepAssembly::scaleOf(const SparseRows& rows, int row, const RowUnit& unit, double base_speed) const
 {
-  LawScale scale{unit.unit, unit.reach, 0.0, std::abs(record.base_velocity)};
+  LawScale scale{unit.unit, unit.reach, 0.0, base_speed};
   for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
     if (entry.col() < velocities_)
     {
@@ -214,12 +214,15 @@ void StepAssembly::setScales()
   int row = 0;
   for (size_t i = 0; i < problem_.laws.size(); ++i)
   {
-    problem_.scales.push_back(scaleOf(problem_.H, row, sink_.units()[i], sink_.rowRecords()[row]));
+    double base_speed = 0.0;
+    for (int k = 0; k < problem_.laws[i].dimension(); ++k)
+      base_speed = std::max(base_speed, std::abs(sink_.rowRecords()[row + k].base_velocity));
+    problem_.scales.push_back(scaleOf(problem_.H, row, sink_.units()[i], base_speed));
     row += problem_.laws[i].dimension();
   }
   problem_.bilateral_scales.clear();
   for (int k = 0; k < problem_.bilaterals(); ++k)
-    problem_.bilateral_scales.push_back(scaleOf(problem_.G, k, sink_.bilateralUnits()[k], sink_.bilateralRecords()[k]));
+    problem_.bilateral_scales.push_back(scaleOf(problem_.G, k, sink_.bilateralUnits()[k], 0.0));
 }
 
 int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer)
@@ -294,6 +297,21 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
   return change <= allowed ? 0.0 : change / allowed;
 }
 
+/** Of a free link that nothing touches: whether it was solved with its exact motion, else as biasMiss. */
+double StepAssembly::freeMiss(const StepContext& context, const Solution& solution, Body& body)
+{
+  body.change = solution.v.segment<6>(body.v_offset) - body.v_free;
+  const double change = pointSpeed(body, body.change);
+  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
+  const double allowed = std::max(tolerance * body.speed_change, SPEED_ROUND_OFF * body.speed);
+  if (change <= allowed)
+    return 0.0;
+  // It was touched in the last step, so that its first guess was another one.
+  body.v_middle = 0.5 * (body.v_start + body.v_free);
+  computeBias(body, body.v_middle, context.gravity, body.next_bias);
+  return change / allowed;
+}
+
 Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
 {
   const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
@@ -302,9 +320,13 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
   for (Body& body : bodies_)
   {
     const int nv = body.model.tree.nv;
-    // A free link that nothing touches has its exact motion already: settleFreeLinks.
-    const bool settled = nv == 0 || (body.model.free_link && !acting_[body_of_[body.v_offset]]);
-    const double miss = settled ? 0.0 : biasMiss(context, solution, body);
+    const bool free = nv > 0 && body.model.free_link && !acting_[body_of_[body.v_offset]];
+    const double miss = nv == 0 ? 0.0 : free ? freeMiss(context, solution, body) : biasMiss(context, solution, body);
+    if (!std::isfinite(miss))
+    {
+      unsatisfied_ = "bias at the midpoint";
+      return Again::NEVER;
+    }
     worst = std::max(worst, miss);
     if (miss == 0.0 || last)
       continue;

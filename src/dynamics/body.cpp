@@ -69,7 +69,7 @@ Eigen::VectorXd jointReach(const MultibodyModel& model, const std::vector<double
                        : joint.type == JointType::PRISMATIC ? 1
                                                             : 0;
     for (int k = linear; k < size; ++k)
-      reach[joint.v_index + k] = farthest[link];
+      reach[joint.v_index + k] = farthest[link] > 0.0 ? farthest[link] : 1.0;
     if (joint.parent >= 0)
       farthest[joint.parent] =
           std::max(farthest[joint.parent], joint.placement.translation().norm() + slide + farthest[link]);

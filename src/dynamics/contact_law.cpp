@@ -19,9 +19,7 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
   if (result.closing && restitution > 0.0)
     result.shift = restitution * old_velocity;
   else
-    // Overlaps below what poses and features are known to ask for no recovery: between two fixed sides none is
-    // possible.
-    result.shift = gap >= 0.0 ? gap / dt : gap > -GAP_ROUND_OFF ? 0.0 : -std::min(-gap / dt, law.recovery_speed);
+    result.shift = gap >= 0.0 ? gap / dt : -std::min(-gap / dt, law.recovery_speed);
   return result;
 }
 

@@ -71,12 +71,14 @@ StepSolver::StepSolver(std::unique_ptr<Solver> method, const StoppingOptions& st
 
 void StepSolver::setMethod(std::unique_ptr<Solver> method)
 {
+  answered_ = helper_ = nullptr;
   method->setStopping(stopping_);
   method_ = std::move(method);
 }
 
 void StepSolver::setOptions(const FailureOptions& options)
 {
+  answered_ = helper_ = nullptr;
   options_ = options;
   method_->setStopping(stopping_);  // without what was left of a time limit
   others_.clear();
@@ -84,6 +86,7 @@ void StepSolver::setOptions(const FailureOptions& options)
 
 void StepSolver::setStop(const std::atomic<bool>* stop)
 {
+  answered_ = helper_ = nullptr;
   stopping_.stop = stop;
   method_->setStopping(stopping_);
   others_.clear();
@@ -92,6 +95,10 @@ void StepSolver::setStop(const std::atomic<bool>* stop)
 void StepSolver::begin()
 {
   others_tried_ = false;
+  helper_ = nullptr;
+  iterations_ = 0;
+  seconds_ = 0.0;
+  tried_.clear();
   if (options_.time_limit > 0.0)
     start_ = std::chrono::steady_clock::now();
 }
@@ -191,6 +198,8 @@ void StepSolver::tryOthers(const IncrementalProblem& problem, SolverResult& resu
       result.status = attempt_.status;
       result.message = attempt_.message;
     }
+    if (attempt_.status == SolverStatus::CONVERGED || result.status == SolverStatus::CONVERGED)
+      helper_ = other.get();  // later rounds of this step start with it
     if (over)
       break;
   }
@@ -207,9 +216,18 @@ void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess,
     setNoAnswer(problem, SolverStatus::NUMERICAL_FAILURE, "forces or velocities have run away", result);
     return;
   }
-  run(*method_, problem, &guess, result);
+  run(helper_ != nullptr ? *helper_ : *method_, problem, &guess, result);
   if (mayTryOthers(result))
     tryOthers(problem, result);
+  // A step may take several solves: what it says is of all of them.
+  iterations_ += result.iterations;
+  seconds_ += result.seconds;
+  for (const std::string& name : result.tried)
+    if (!contains(tried_, name))
+      tried_.push_back(name);
+  result.iterations = iterations_;
+  result.seconds = seconds_;
+  result.tried = tried_;
 }
 
 void StepSolver::takeLeastNorm(const IncrementalProblem& problem, SolverResult& result)

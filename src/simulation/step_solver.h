@@ -44,6 +44,10 @@ private:
 
   std::unique_ptr<Solver> method_;
   Solver* answered_ = nullptr;  ///< the method that ran last
+  Solver* helper_ = nullptr;  ///< the one of the others that has answered in this step
+  int iterations_ = 0;  ///< of all solves of this step
+  double seconds_ = 0.0;
+  std::vector<std::string> tried_;
   LeastNorm least_norm_;
   Eigen::VectorXd thresholds_;
   std::vector<std::unique_ptr<Solver>> others_;  ///< made when first needed, in the order of the list

@@ -135,7 +135,7 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     const bool taken = simulator.step().taken;
     const fcs::StepSummary& report = simulator.report();
     going = judge(simulator, options, "step " + std::to_string(report.step), summary);
-    if (!options.dump.empty() && !summary.ended && (summary.steps + 1) % options.dump_every == 0)
+    if (!options.dump.empty() && !summary.ended && !stop_requested && (summary.steps + 1) % options.dump_every == 0)
       dumpProblem(simulator, options);
     if (!taken)
       continue;

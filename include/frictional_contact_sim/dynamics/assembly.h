@@ -85,8 +85,9 @@ private:
   void findActing(const Solution& solution);
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
+  double freeMiss(const StepContext& context, const Solution& solution, Body& body);
   void assembleMass(bool with_implicit);
-  LawScale scaleOf(const SparseRows& rows, int row, const RowUnit& unit, const RowRecord& record) const;
+  LawScale scaleOf(const SparseRows& rows, int row, const RowUnit& unit, double base_speed) const;
   void setScales();
   void bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record, EnergyLedger& ledger) const;
 

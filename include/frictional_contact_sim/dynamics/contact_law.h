@@ -8,7 +8,6 @@
  *   closing with restitution e > 0 (u_old < -threshold and gap + dt u_old <= 0)   u_N >= -e u_old
  *   gap >= 0                                                                      u_N >= -gap/dt
  *   gap < 0                                                                       u_N >= min(-gap/dt, v_recover)
- *   -GAP_ROUND_OFF < gap < 0                                                      u_N >= 0
  *
  * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (DESIGN.md, "The time step"). The thesis's
  * plain velocity law (Cadoux 2009, 1.1.5 and 2.2: u_N + e u_old >= 0 where gap <= 0, nothing else) stays selectable.
@@ -41,7 +40,6 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
 /** @brief The same for an impact at one instant (dt = 0): u_N >= -e min(u_old, 0) where gap <= CONTACT_GAP. */
 NormalShift impactShift(double gap, double old_velocity, double restitution);
 
-constexpr double GAP_ROUND_OFF = 1e-12;  ///< overlaps up to this are none [m] (or [rad] of joint limits)
 constexpr double CONTACT_GAP = 1e-9;  ///< closer than this is touching, for the impact solve at a given state [m]
 
 }  // namespace frictional_contact_sim
