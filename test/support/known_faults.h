@@ -20,31 +20,14 @@ struct KnownFault
 
 inline const std::vector<KnownFault>& knownFaults()
 {
-  static const char* const SCALE = "E is relative to |r|/rho: weaker than the tolerance says (part 8, scale of E)";
-  static const char* const ROUND_OFF = "q of idle mimic or friction rows is round-off (part 8, scale of E)";
-  static const char* const SOLVER = "no method reaches the tolerance (part 8, scale of E and fallback)";
+  static const char* const SOLVER =
+      "no method reaches 1e-8 of g dt in its budget (E is some 1e-7): up to 20 times harder than with |r|/rho in S";
   static const char* const GEOMETRY = "the end pose is deeper than the points of the manifold say (part 9)";
   static const std::vector<KnownFault> table = {
-      {"TenBoxesHeavyOnLightStandStill", "gap", SCALE},
-      {"WhileItFalls/dominoes15", "penetration", GEOMETRY},
-      {"WhileItFalls/capsules12", "penetration", GEOMETRY},
-      {"WhileItFalls/chain10", "penetration", GEOMETRY},
-      {"WhileItFalls/chain10coupled", "penetration", GEOMETRY},
-      {"WhileItFalls/grippers8", "penetration", GEOMETRY},
-      {"WhileItFalls/chain10coupled", "failed", ROUND_OFF},
-      {"WhileItFalls/grippers8", "failed", ROUND_OFF},
-      {"WhileItFalls/boxstack8", "gap", SCALE},
-      {"WhileItFalls/kapla20", "gap", SCALE},
-      {"WhileItFalls/arch15push", "gap", SCALE},
-      {"WhileItFalls/pyramid5", "cone", SCALE},
-      {"WhileItFalls/pyramid5", "friction", SCALE},
-      {"WhileItFalls/pyramid5", "gap", SCALE},
-      {"WhileItFalls/rocks10", "friction", SCALE},
-      {"AFailedStep/go1", "friction", SCALE},
-      {"WhileItFalls/rocks10", "gap", SCALE},
-      {"AFailedStep/go1", "gap", SCALE},
-      {"WhileItFalls/pyramid5", "failed", SOLVER},
-      {"WhileItFalls/spheres30", "failed", SOLVER},
+      {"WhileItFalls/dominoes15", "penetration", GEOMETRY}, {"WhileItFalls/capsules12", "penetration", GEOMETRY},
+      {"WhileItFalls/chain10", "penetration", GEOMETRY},    {"WhileItFalls/chain10coupled", "penetration", GEOMETRY},
+      {"WhileItFalls/grippers8", "penetration", GEOMETRY},  {"WhileItFalls/pyramid5", "failed", SOLVER},
+      {"WhileItFalls/boxes12", "failed", SOLVER},
   };
   return table;
 }
