@@ -21,8 +21,9 @@ CommandResult runWithSignal(const std::string& signal, const std::string& name, 
 {
   const fs::path base = fs::temp_directory_path() / ("signals_" + std::to_string(getpid()));
   // --foreground: otherwise timeout signals the program and then its group, and a second signal ends it at once.
-  const std::string command = "timeout --foreground --preserve-status -k 100 -s " + signal + " 2 " + TOOL_DIR + "/" + name + " " +
-                              arguments + " >" + base.string() + ".out 2>" + base.string() + ".err </dev/null";
+  const std::string command = "timeout --foreground --preserve-status -k 100 -s " + signal + " 2 " + TOOL_DIR + "/" +
+                              name + " " + arguments + " >" + base.string() + ".out 2>" + base.string() +
+                              ".err </dev/null";
   const int status = std::system(command.c_str());
   CommandResult result;
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

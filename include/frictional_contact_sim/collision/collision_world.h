@@ -94,7 +94,8 @@ public:
    * after warm-up; the list is valid until the next call.
    */
   const std::vector<ContactPoint>& detect(double margin);
-  /** @brief The same with a margin a body; a pair has the larger of its two, so that no third body changes its points. */
+  /** @brief The same with a margin a body; a pair has the larger of its two, so that no third body changes its points.
+   */
   const std::vector<ContactPoint>& detect(const std::vector<double>& body_margins);
 
   /** @brief Lowest z over all points of all shapes of a body at the poses set [m]; +infinity without shapes. */

@@ -27,8 +27,8 @@ struct HistoryEntry
 
 /**
  * @brief Work of a solve in products with its W (2 nnz flops each), so that inner iterations and factorizations count
- * as what they cost; no clock. Of islands each has its own: one does not starve the others, and their sum is the
- * whole's.
+ * as what they cost; no clock. Of islands each has its own: one does not starve the others,
+ * and the whole's is that of the hardest.
  */
 struct WorkMeter
 {
