@@ -34,7 +34,8 @@ inline const std::vector<KnownSeeds>& knownSeeds()
        "128, 163, 166, 171, 201, 249, 276, 310: jaws overlap a block by the 1e-13 m of the file's digits on both "
        "sides, "
        "which no recovery can undo; others: E of 1e-8 to 1e-7 on contacts of hundreds of rows, not traced",
-       {39, 119, 128, 163, 165, 166, 171, 201, 202, 226, 234, 249, 250, 271, 275, 276, 278, 279, 301, 307, 310, 314}},
+       {4,   23,  39,  119, 128, 163, 165, 166, 171, 194, 201, 202, 226,
+        234, 249, 250, 271, 275, 276, 278, 279, 301, 307, 310, 314}},
       {"momentum", "1.3e-10 of the largest term with 1e3 times the loads between two jaws", {276}},
       {"penetration", "end poses are not looked at (part 9)", {14,  206, 20,  36,  43,  63,  67,  103, 124,
                                                                151, 158, 178, 183, 190, 207, 218, 230, 258,
