@@ -5,21 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/problem/residual_metric.h"
 
 namespace frictional_contact_sim
 {
-namespace
-{
-constexpr int MOST_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last
-constexpr double UNSETTLED = 1e3;  ///< times its threshold: what a bias may still miss after the most rounds
-constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
-constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
-constexpr double SPEED_ROUND_OFF = 1e-14;  ///< relative to the speed itself
-}  // namespace
-
 StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_ptr<RowSource>> sources, RowState& state)
   : bodies_(bodies), sources_(std::move(sources)), state_(state)
 {
@@ -112,61 +102,6 @@ void StepAssembly::assembleMass(bool with_implicit)
     rows_m_.endRow();
   }
   rows_m_.copyTo(sink_.columns(), problem_.M);
-}
-
-/** Which bodies a row with an impulse touches. */
-void StepAssembly::findActing(const Solution& solution)
-{
-  std::fill(acting_.begin(), acting_.end(), 0);
-  const auto mark = [this](const SparseRows& rows, const Eigen::VectorXd& impulses)
-  {
-    for (int i = 0; i < rows.rows(); ++i)
-      if (impulses[i] != 0.0)
-        for (SparseRows::InnerIterator entry(rows, i); entry; ++entry)
-          if (entry.col() < velocities_)
-            acting_[body_of_[entry.col()]] = 1;
-  };
-  mark(problem_.H, solution.r);
-  mark(problem_.G, solution.lambda);
-}
-
-/** Body::v_free, its speeds, and bias at the first guess of the mean velocity (or at that of an answer). */
-void StepAssembly::predict(const StepContext& context, Body& body, const Solution* answer)
-{
-  const MultibodyModel& tree = body.model.tree;
-  const auto momentum = momentum_.segment(body.v_offset, tree.nv);
-  const auto move = [&](Eigen::VectorXd& v)
-  {
-    v = momentum - context.dt * body.bias;
-    solveMassMatrix(tree, body.middle, v);
-  };
-  computeBias(body, body.v_start, context.gravity, body.bias);
-  if (body.model.free_link)
-    moveFreely(body, context.gravity, context.dt);
-  else
-    move(body.v_free);
-  setSpeeds(body);
-  if (answer)
-  {
-    body.v_middle = 0.5 * (body.v_start + answer->v.segment(body.v_offset, tree.nv));
-    computeBias(body, body.v_middle, context.gravity, body.bias);
-    return;
-  }
-  if (acting_[body_of_[body.v_offset]])
-    return;
-  const double allowed = std::max(context.tolerance, BIAS_ROUND_OFF) * body.speed_change;
-  for (int round = 0; round < MOST_BIAS_ROUNDS; ++round)
-  {
-    body.v_middle = 0.5 * (body.v_start + body.v_free);
-    computeBias(body, body.v_middle, context.gravity, body.bias);
-    if (body.model.free_link)
-      return;
-    body.change = body.v_free;
-    move(body.v_free);
-    body.change -= body.v_free;
-    if (pointSpeed(body, body.change) <= allowed)
-      return;
-  }
 }
 
 /** f of one body; false where its mass matrix is not positive definite. */
@@ -267,85 +202,6 @@ Again StepAssembly::again(const StepContext& context, const Solution& solution, 
       return again;
     }
   return converged && !context.impact ? biasAgain(context, solution) : Again::NO;
-}
-
-/** How much the bias at the mean velocity of an answer misses, in units of what it may: Body::next_bias, change. */
-double StepAssembly::biasMiss(const StepContext& context, const Solution& solution, Body& body)
-{
-  const MultibodyModel& tree = body.model.tree;
-  const auto v = solution.v.segment(body.v_offset, tree.nv);
-  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
-  // What rests has nothing to look at: velocities enter the bias as squares.
-  const double fastest = std::max(body.v_start.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
-  if (context.dt * AT_REST * fastest * fastest <= tolerance * body.speed_change)
-    return 0.0;
-  body.v_middle = 0.5 * (body.v_start + v);
-  computeBias(body, body.v_middle, context.gravity, body.next_bias);
-  body.change = context.dt * (body.next_bias - body.bias);
-  if (body.change.isZero(0.0))
-    return 0.0;
-  solveMassMatrix(tree, body.middle, body.change);
-  const double change = pointSpeed(body, body.change);
-  if (change <= tolerance * body.speed_change)
-    return 0.0;
-  // A body that was at rest and is hit has no smooth forces at the start; then those at its mean velocity count.
-  body.change = v;
-  double allowed = std::max(tolerance * body.speed_change, SPEED_ROUND_OFF * pointSpeed(body, body.change));
-  body.change = context.dt * body.next_bias;
-  solveMassMatrix(tree, body.middle, body.change);
-  allowed = std::max(allowed, tolerance * pointSpeed(body, body.change));
-  return change <= allowed ? 0.0 : change / allowed;
-}
-
-/** Of a free link that nothing touches: whether it was solved with its exact motion, else as biasMiss. */
-double StepAssembly::freeMiss(const StepContext& context, const Solution& solution, Body& body)
-{
-  body.change = solution.v.segment<6>(body.v_offset) - body.v_free;
-  const double change = pointSpeed(body, body.change);
-  const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
-  const double allowed = std::max(tolerance * body.speed_change, SPEED_ROUND_OFF * body.speed);
-  if (change <= allowed)
-    return 0.0;
-  // It was touched in the last step, so that its first guess was another one.
-  body.v_middle = 0.5 * (body.v_start + body.v_free);
-  computeBias(body, body.v_middle, context.gravity, body.next_bias);
-  return change / allowed;
-}
-
-Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
-{
-  const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
-  double worst = 0.0;
-  findActing(solution);
-  for (Body& body : bodies_)
-  {
-    const int nv = body.model.tree.nv;
-    const bool free = nv > 0 && body.model.free_link && !acting_[body_of_[body.v_offset]];
-    const double miss = nv == 0 ? 0.0 : free ? freeMiss(context, solution, body) : biasMiss(context, solution, body);
-    if (!std::isfinite(miss))
-    {
-      unsatisfied_ = "bias at the midpoint";
-      return Again::NEVER;
-    }
-    worst = std::max(worst, miss);
-    if (miss == 0.0 || last)
-      continue;
-    problem_.f.segment(body.v_offset, nv) += context.dt * (body.next_bias - body.bias);
-    body.bias = body.next_bias;
-  }
-  if (worst == 0.0 || (last && worst < UNSETTLED))
-    return Again::NO;
-  unsatisfied_ = "bias at the midpoint";
-  ++bias_rounds_;
-  return last ? Again::NEVER : Again::FORCES;
-}
-
-void StepAssembly::settleFreeLinks(Solution& solution)
-{
-  findActing(solution);
-  for (size_t b = 0; b < bodies_.size(); ++b)
-    if (bodies_[b].model.free_link && !acting_[b])
-      solution.v.segment<6>(bodies_[b].v_offset) = bodies_[b].v_free;
 }
 
 void StepAssembly::setMeanVelocity(const Solution& solution)

@@ -9,12 +9,12 @@
 #include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
+#include "frictional_contact_sim/problem/residual_metric.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double SMALLEST_CHANGE = 1e-12;  ///< of speed by one step's forces [m/s]
 
 struct Reach
 {
@@ -245,7 +245,7 @@ void setSpeeds(Body& body)
   body.change = body.v_free - body.v_start;
   forwardVelocities(body.model.tree, body.change, data);
   body.speed = 0.0;
-  body.speed_change = SMALLEST_CHANGE;
+  body.speed_change = VELOCITY_FLOOR;
   for (size_t link = 0; link < data.link_velocity.size(); ++link)
   {
     const Vector6d& start = data.link_force[link];

@@ -303,7 +303,7 @@ ContactKinematics collect(const SparseRows& H, const Eigen::VectorXd& w, const s
   for (size_t i = 0; i < laws.size(); ++i)
   {
     const Law& law = laws[i];
-    if (law.isCoulomb() || law.type == LawType::UNILATERAL)
+    if (law.isOneSided())
       kinematics.cones.push_back({static_cast<int>(i), row, law.dimension(), law.isCoulomb() ? law.coefficient : 0.0});
     else if (law.type == LawType::BILATERAL)
     {

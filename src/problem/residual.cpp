@@ -230,7 +230,7 @@ Diagnostics diagnose(const std::vector<Law>& laws, const Eigen::VectorXd& q, con
     projectImpulse(law, projected.data());
     result.cone_violation =
         std::max(result.cone_violation, (r.segment(row, dimension) - projected.head(dimension)).norm());
-    if (law.isCoulomb() || law.type == LawType::UNILATERAL)
+    if (law.isOneSided())
     {
       result.negative_velocity = std::max(result.negative_velocity, -u[row]);
       result.complementarity = std::max(result.complementarity, std::abs(u[row] * r[row]));

@@ -9,16 +9,16 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double QUIET_SHARE = 1e-6;  ///< of a bare problem's |q|: what an island at rest is measured with
-}  // namespace
 
+/** Largest |q| of a law's rows, of a one-sided row only its negative part; q points to its rows. */
 double countedVelocity(const Law& law, const double* q)
 {
-  const bool one_sided = law.isCoulomb() || law.type == LawType::UNILATERAL;
-  double largest = one_sided ? std::max(0.0, -q[0]) : std::abs(q[0]);
+  double largest = law.isOneSided() ? std::max(0.0, -q[0]) : std::abs(q[0]);
   for (int k = 1; k < law.dimension(); ++k)
     largest = std::max(largest, std::abs(q[k]));
   return largest;
 }
+}  // namespace
 
 void ResidualMetric::setScales(const std::vector<Law>& laws, const std::vector<LawScale>& given,
                                const Eigen::VectorXd& q, const Islands& islands)
@@ -47,8 +47,8 @@ void ResidualMetric::setScales(const std::vector<Law>& laws, const std::vector<L
     const auto index = static_cast<Eigen::Index>(i);
     const LawScale& scale = given.empty() ? BARE : given[i];
     const Largest& island = largest_[static_cast<size_t>(islands.islandOf(static_cast<int>(i)))];
-    scales[index] = std::max({island.q[static_cast<size_t>(scale.unit)],
-                              std::max({island.speed_change, quiet, VELOCITY_FLOOR}) / scale.reach});
+    scales[index] = std::max(island.q[static_cast<size_t>(scale.unit)],
+                             std::max({island.speed_change, quiet, VELOCITY_FLOOR}) / scale.reach);
     round_off[index] = ROUND_OFF * std::numeric_limits<double>::epsilon() * scale.speed / scale.reach;
   }
 }

@@ -25,8 +25,7 @@ double restingResidual(const DelassusProblem& problem, const ResidualMetric& met
   {
     const Law& law = problem.laws[i];
     const double velocity = problem.q[row];
-    const bool one_sided = law.isCoulomb() || law.type == LawType::UNILATERAL;
-    const double error = one_sided ? -velocity : std::abs(velocity);
+    const double error = law.isOneSided() ? -velocity : std::abs(velocity);
     const auto index = static_cast<Eigen::Index>(i);
     if (error > metric.round_off[index])
       worst = std::max(worst, error / metric.scales[index]);

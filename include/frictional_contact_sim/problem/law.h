@@ -33,6 +33,8 @@ struct Law
 
   /** @brief Number of rows: 3, 2 or 1. */
   int dimension() const { return type == LawType::COULOMB_3D ? 3 : type == LawType::COULOMB_2D ? 2 : 1; }
+  /** @brief Its first row may part: u >= 0 costs nothing there. */
+  bool isOneSided() const { return isCoulomb() || type == LawType::UNILATERAL; }
   bool isCoulomb() const { return type == LawType::COULOMB_3D || type == LawType::COULOMB_2D; }
 };
 

@@ -57,7 +57,4 @@ private:
   std::vector<Largest> largest_;
 };
 
-/** @brief Largest |q| of a law's rows, of a one-sided row only its negative part; q points to its rows. */
-double countedVelocity(const Law& law, const double* q);
-
 }  // namespace frictional_contact_sim
