@@ -13,7 +13,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr int MAX_SHAPES = 1 << 16;  // 16 bits each in an id
 constexpr double OVERLAP_GAP = -1e-9;  // [m] less is an overlap of the initial pose, not a touch
 
 struct Instance
@@ -43,12 +42,6 @@ struct ShapeModel
 
   bool mayCollide(int i, int k) const;
 };
-
-std::uint64_t makeId(int a, int b, const PairContact& point)
-{
-  return (static_cast<std::uint64_t>(a) << 48) | (static_cast<std::uint64_t>(b) << 32) |
-         (static_cast<std::uint64_t>(point.feature_a) << 16) | point.feature_b;
-}
 
 bool ShapeModel::mayCollide(int i, int k) const
 {
@@ -103,8 +96,6 @@ struct CollisionWorld::Impl
 
   int addInstance(Instance instance, ShapeInfo info)
   {
-    if (model->instances.size() >= MAX_SHAPES)
-      throw std::invalid_argument("collision: more than " + std::to_string(MAX_SHAPES) + " shapes");
     ShapeModel& shapes = edit();
     shapes.most_vertices = std::max(shapes.most_vertices, instance.shape.core.vertices.size());
     manifold.reserve(2 * shapes.most_vertices);
@@ -161,8 +152,8 @@ struct CollisionWorld::Impl
     for (int i = 0; i < manifold.count; ++i)
     {
       const PairContact& point = manifold.points[i];
-      contacts.push_back({makeId(pair.a, pair.b, point), pair.a, pair.b, pose * point.position,
-                          pose.linear() * point.normal, point.gap});
+      contacts.push_back({makeContactId(pair.a, pair.b, point.feature_a, point.feature_b), pair.a, pair.b,
+                          pose * point.position, pose.linear() * point.normal, point.gap});
     }
   }
 

@@ -75,7 +75,7 @@ void ContactRows::begin(const StepContext&)
   std::sort(index_.begin(), index_.end());
 }
 
-const ContactState* ContactRows::last(std::uint64_t id) const
+const ContactState* ContactRows::last(const ContactId& id) const
 {
   const auto entry = std::lower_bound(index_.begin(), index_.end(), std::make_pair(id, 0));
   if (entry == index_.end() || entry->first != id)

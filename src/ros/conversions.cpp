@@ -130,7 +130,7 @@ void fillContacts(const Simulator& simulator, const NameTable& names, const ros:
   {
     const ContactState& source = contacts[i];
     Contact& target = message.contacts[i];
-    target.id = source.id;
+    target.id = source.id.number();
     fillSide(simulator.shape(source.shape_a), names, target.body_a, target.link_a, target.collision_a);
     fillSide(simulator.shape(source.shape_b), names, target.body_b, target.link_b, target.collision_b);
     fillPoint(source.position, target.position);

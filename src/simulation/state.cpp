@@ -47,7 +47,8 @@ void visit(StateArchive& archive, BodyState& body)
 void visit(StateArchive& archive, ContactState& contact)
 {
   constexpr std::uint64_t MODES = 4;
-  archive.integer("contact.id", contact.id);
+  archive.integer("contact.id.shapes", contact.id.shapes);
+  archive.integer("contact.id.features", contact.id.features);
   archive.index("contact.shape_a", contact.shape_a);
   archive.index("contact.shape_b", contact.shape_b);
   archive.vector("contact.position", contact.position);

@@ -29,7 +29,7 @@ TEST(BoxStackTest, EachLevelHasFourPointsWithIdsThatPersist)
   CollisionWorld world;
   addStack(world, Eigen::Isometry3d::Identity());
   std::mt19937 random(1);
-  std::set<std::uint64_t> ids;
+  std::set<ContactId> ids;
   for (int step = 0; step < 50; ++step)
   {
     for (int k = 0; k < 10; ++k)

@@ -119,7 +119,7 @@ TEST(BoxOnBoxTest, EqualBoxesInAStackShareFourPointsWhateverTheRoundOff)
 {
   std::mt19937 random(4);
   const ConvexShape box = makeShape(Box{{0.1, 0.1, 0.05}});
-  std::set<std::uint32_t> features;
+  std::set<ContactId> features;
   for (int k = 0; k < 200; ++k)
   {
     const Eigen::Vector3d jitter = (k == 0 ? 0.0 : 1e-15) * randomVector(random);
@@ -131,7 +131,7 @@ TEST(BoxOnBoxTest, EqualBoxesInAStackShareFourPointsWhateverTheRoundOff)
       EXPECT_NEAR(point.gap, 0.0, 5e-15);
       EXPECT_NEAR(std::abs(point.position.x()), 0.1, 1e-14);
       EXPECT_NEAR(std::abs(point.position.y()), 0.1, 1e-14);
-      features.insert((point.feature_a << 16) | point.feature_b);
+      features.insert(makeContactId(0, 0, point.feature_a, point.feature_b));
     }
   }
   EXPECT_EQ(features.size(), 4u);  // the same four ids in all cases
@@ -156,8 +156,8 @@ TEST(BoxOnBoxTest, PointsComeInTheOrderOfTheirFeatures)
   const auto points = contactsOf(box, box, at(0.08, -0.03, 0.1), 1e-3);
   ASSERT_EQ(points.size(), 4u);
   // A corner of a on the face of b, two crossings of edges, a corner of b in the face of a.
-  EXPECT_EQ(points.front().feature_a >> 14, static_cast<int>(FeatureKind::VERTEX));
-  EXPECT_EQ(points.back().feature_a >> 14, static_cast<int>(FeatureKind::FACE));
+  EXPECT_EQ(points.front().feature_a >> FEATURE_INDEX_BITS, static_cast<Feature>(FeatureKind::VERTEX));
+  EXPECT_EQ(points.back().feature_a >> FEATURE_INDEX_BITS, static_cast<Feature>(FeatureKind::FACE));
   for (size_t i = 1; i < points.size(); ++i)
   {
     EXPECT_LT(std::make_pair(points[i - 1].feature_a, points[i - 1].feature_b),

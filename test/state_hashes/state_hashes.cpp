@@ -17,6 +17,7 @@
 #include <exception>
 #include <iterator>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "frictional_contact_sim/simulation/scenario_loader.h"
@@ -63,6 +64,23 @@ void addMotion(const fcs::Simulator& simulator, Hash& hash)
   }
 }
 
+/** Contact ids as the four 16-bit numbers of commits up to d6f7087, where they fit: shapes, features, kind in the two
+ * high bits. */
+template <class Id>
+std::uint64_t idNumber(const Id& id)
+{
+  if constexpr (std::is_integral_v<Id>)
+  {
+    return id;
+  }
+  else
+  {
+    const auto narrow = [](std::uint64_t feature) { return ((feature >> 30) << 14) | (feature & 0x3fffU); };
+    return ((id.shapes >> 32) << 48) | ((id.shapes & 0xffffU) << 32) | (narrow(id.features >> 32) << 16) |
+           narrow(id.features & 0xffffffffU);
+  }
+}
+
 /** The order of src/simulation/state_hash.cpp at d0e72fa. */
 void addAll(const fcs::Simulator& simulator, Hash& hash)
 {
@@ -75,7 +93,7 @@ void addAll(const fcs::Simulator& simulator, Hash& hash)
   }
   for (const auto& contact : simulator.contacts())
   {
-    hash.add(static_cast<std::uint64_t>(contact.id));
+    hash.add(idNumber(contact.id));
     hash.add(static_cast<std::uint64_t>(contact.mode));
     for (const Eigen::Vector3d* vector : {&contact.position, &contact.normal, &contact.impulse, &contact.velocity})
       hash.add(*vector);

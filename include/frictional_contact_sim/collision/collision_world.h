@@ -8,12 +8,12 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "frictional_contact_sim/collision/contact_id.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
 
@@ -22,12 +22,11 @@ namespace frictional_contact_sim
 /**
  * @brief One contact point between shape_a and shape_b; the normal points from b to a.
  *
- * A static shape is always b; of two shapes of bodies, a has the lower handle. The id is the four 16-bit numbers
- * shape_a, shape_b, feature of a, feature of b side by side, so no two points share one.
+ * A static shape is always b; of two shapes of bodies, a has the lower handle.
  */
 struct ContactPoint
 {
-  std::uint64_t id = 0;  ///< same pair of features: same id, as long as it persists
+  ContactId id;  ///< same pair of features: same id, as long as it persists
   int shape_a = 0;  ///< 0, 1, ... in the order of addBody / addStatic
   int shape_b = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world, midway between the two surface points [m]

@@ -8,28 +8,14 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <vector>
 
+#include "frictional_contact_sim/collision/contact_id.h"
 #include "frictional_contact_sim/collision/convex_shape.h"
 
 namespace frictional_contact_sim
 {
 constexpr int MAX_PAIR_POINTS = 8;
-
-/// Number of a feature of one shape: kind in the two high bits, index in the other 14.
-using Feature = std::uint16_t;
-enum class FeatureKind
-{
-  VERTEX,
-  EDGE,
-  FACE,
-  CURVE  ///< points of a cylinder's rim and side, see CylinderFeature
-};
-constexpr Feature makeFeature(FeatureKind kind, int index)
-{
-  return static_cast<Feature>((static_cast<int>(kind) << 14) | (index & 0x3fff));
-}
 
 struct PairContact
 {

@@ -59,14 +59,14 @@ private:
                       PointColumns& columns) const;
   bool movesAlong(const Eigen::Vector3d& normal) const;
   /** Last contact of the same id, or nullptr where there was none or it was an impact. */
-  const ContactState* last(std::uint64_t id) const;
+  const ContactState* last(const ContactId& id) const;
 
   const std::vector<Body>& bodies_;
   const CollisionWorld& world_;
   const PairTable& pairs_;
   std::vector<ContactState>& contacts_;
   CreepRows* creep_;
-  std::vector<std::pair<std::uint64_t, int>> index_;  ///< id to position in contacts_, sorted
+  std::vector<std::pair<ContactId, int>> index_;  ///< id to position in contacts_, sorted
   std::vector<ContactRow> rows_;
   PointColumns columns_a_;
   PointColumns columns_b_;

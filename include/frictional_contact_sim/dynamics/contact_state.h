@@ -4,7 +4,8 @@
  * @brief A contact at the end of a step: what messages report, and what the next step starts from.
  */
 #include <Eigen/Core>
-#include <cstdint>
+
+#include "frictional_contact_sim/collision/contact_id.h"
 
 namespace frictional_contact_sim
 {
@@ -20,7 +21,7 @@ const char* toString(ContactMode mode);
 /** @brief `a` and `b` are shape handles of Simulator::shape. */
 struct ContactState
 {
-  std::uint64_t id = 0;
+  ContactId id;
   int shape_a = 0;
   int shape_b = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world [m]
