@@ -303,10 +303,14 @@ const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double
   impl_->updatePairs();
   impl_->contacts.clear();
   const std::vector<ShapeInfo>& infos = impl_->model->infos;
-  const auto marginOf = [&](int handle) { return infos[handle].body < 0 ? 0.0 : body_margins[infos[handle].body]; };
+  const auto marginOf = [&](int handle) { return infos[handle].body < 0 ? -1.0 : body_margins[infos[handle].body]; };
   const double largest = body_margins.empty() ? 0.0 : *std::max_element(body_margins.begin(), body_margins.end());
   for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, largest))
-    impl_->addPair(pair, std::max(marginOf(pair.a), marginOf(pair.b)));
+  {
+    const double margin = std::max(marginOf(pair.a), marginOf(pair.b));
+    if (margin >= 0.0)
+      impl_->addPair(pair, margin);
+  }
   return impl_->contacts;
 }
 

@@ -18,6 +18,7 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
     body.v_offset = velocities_;
     velocities_ += body.model.tree.nv;
     body_of_.resize(velocities_, static_cast<int>(&body - bodies_.data()));
+    joint_body_.resize(joint_body_.size() + body.model.tree.joints.size(), static_cast<int>(&body - bodies_.data()));
   }
   acting_.resize(bodies_.size());
   // Entry (i, j) of M is structurally nonzero when one coordinate is the other's ancestor (Featherstone 2008, 6.3).
@@ -46,6 +47,18 @@ void StepAssembly::begin(StepContext& context)
   context.v_old = &v_old_;
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->begin(context);
+  findLastActing(context);
+}
+
+int StepAssembly::assembleForces(const StepContext& context)
+{
+  momentum_.resize(velocities_);
+  force_.resize(velocities_);
+  int singular = -1;
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (bodies_[b].model.tree.nv > 0 && !assembleForces(context, static_cast<int>(b)))
+      singular = static_cast<int>(b);
+  return singular;
 }
 
 void StepAssembly::assembleRows(const StepContext& context)
@@ -53,6 +66,7 @@ void StepAssembly::assembleRows(const StepContext& context)
   sink_.clear(velocities_);
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->addRows(context, sink_);
+  joint_rows_ = sink_.rows();
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     const std::vector<Joint>& joints = bodies_[b].model.tree.joints;
@@ -61,26 +75,36 @@ void StepAssembly::assembleRows(const StepContext& context)
         for (const std::unique_ptr<RowSource>& source : sources_)
           source->addJointRows(context, static_cast<int>(b), static_cast<int>(j), sink_);
   }
-  sink_.copyTo(context.impact, problem_);
+  bias_rounds_ = 0;
 }
 
-void StepAssembly::makeGuess(const StepContext& context, Solution& guess) const
+void StepAssembly::makeGuess(const StepContext& context, Solution& guess, const Solution* answer) const
 {
-  guess.r.setZero(problem_.rows());
-  guess.u.setZero(problem_.rows());
+  const int rows = sink_.rows();
+  const int bilaterals = sink_.bilaterals();
+  const int last_rows = problem_.rows();  // those that `answer` is of
+  guess.r.setZero(rows);
+  guess.u.setZero(rows);
   guess.v.setZero(sink_.columns());
   guess.v.head(velocities_) = v_old_;
-  guess.lambda.setZero(problem_.bilaterals());
-  if (context.impact)
+  guess.lambda.setZero(bilaterals);
+  if (context.impact && !answer)
     return;
-  for (int i = 0; i < problem_.rows(); ++i)
+  for (int i = 0; i < rows; ++i)
     if (const double* memory = sink_.rowRecords()[i].memory)
       guess.r[i] = *memory;
-  for (int k = 0; k < problem_.bilaterals(); ++k)
+  for (int k = 0; k < bilaterals; ++k)
     if (const double* memory = sink_.bilateralRecords()[k].memory)
       guess.lambda[k] = *memory;
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->guess(context, guess);
+  if (!answer)
+    return;
+  // Contacts know their impulses of the answer by id; other rows are the same ones, or start from the last step.
+  guess.v.head(velocities_) = answer->v.head(velocities_);
+  if (last_rows - last_joint_rows_ == rows - joint_rows_)
+    guess.r.tail(rows - joint_rows_) = answer->r.tail(rows - joint_rows_);
+  guess.lambda = answer->lambda;
 }
 
 void StepAssembly::assembleMass(bool with_implicit)
@@ -105,7 +129,7 @@ void StepAssembly::assembleMass(bool with_implicit)
 }
 
 /** f of one body; false where its mass matrix is not positive definite. */
-bool StepAssembly::assembleForces(const StepContext& context, int index, const Solution* answer)
+bool StepAssembly::assembleForces(const StepContext& context, int index)
 {
   Body& body = bodies_[index];
   const MultibodyModel& tree = body.model.tree;
@@ -113,7 +137,7 @@ bool StepAssembly::assembleForces(const StepContext& context, int index, const S
   momentum.noalias() = body.middle.mass_matrix * body.v_start;
   if (context.impact)
   {
-    problem_.f.segment(body.v_offset, tree.nv) = -momentum;
+    force_.segment(body.v_offset, tree.nv) = -momentum;
     body.speed = pointSpeed(body, body.v_start);
     body.speed_change = std::max(VELOCITY_FLOOR, context.dt * context.gravity.norm());  // of the step that follows
     return true;
@@ -124,8 +148,8 @@ bool StepAssembly::assembleForces(const StepContext& context, int index, const S
     source->addMomentum(context, index, momentum);
   if (!factorizeMassMatrix(tree, body.implicit, body.middle))
     return false;
-  predict(context, body, answer);
-  problem_.f.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;
+  predict(context, body);
+  force_.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;
   return true;
 }
 
@@ -160,23 +184,14 @@ void StepAssembly::setScales()
     problem_.bilateral_scales.push_back(scaleOf(problem_.G, k, sink_.bilateralUnits()[k], 0.0));
 }
 
-int StepAssembly::assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer)
+void StepAssembly::assembleProblem(const StepContext& context)
 {
-  assert(guess.r.size() == problem_.rows());
+  sink_.copyTo(context.impact, problem_);
+  last_joint_rows_ = joint_rows_;
   problem_.f.setZero(sink_.columns());
-  momentum_.resize(velocities_);
-  if (answer == nullptr)
-  {
-    findActing(guess);
-    bias_rounds_ = 0;
-  }
-  int singular = -1;
-  for (size_t b = 0; b < bodies_.size(); ++b)
-    if (bodies_[b].model.tree.nv > 0 && !assembleForces(context, static_cast<int>(b), answer))
-      singular = static_cast<int>(b);
+  problem_.f.head(velocities_) = force_;
   assembleMass(!context.impact);
   setScales();
-  return singular;
 }
 
 void StepAssembly::clear()
@@ -201,7 +216,18 @@ Again StepAssembly::again(const StepContext& context, const Solution& solution, 
       unsatisfied_ = source->name();
       return again;
     }
-  return converged && !context.impact ? biasAgain(context, solution) : Again::NO;
+  if (!converged)
+    return Again::NO;
+  if (!context.impact)
+    if (const Again again = biasAgain(context, solution); again != Again::NO)
+      return again;
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    if (const Again again = source->lookAhead(context, solution); again != Again::NO)
+    {
+      unsatisfied_ = source->name();
+      return again;
+    }
+  return Again::NO;
 }
 
 void StepAssembly::setMeanVelocity(const Solution& solution)

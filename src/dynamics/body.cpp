@@ -187,12 +187,18 @@ void updateEnd(Body& body)
     }
 }
 
-void moveToMidpoint(Body& body, double dt)
+void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
+                  Eigen::VectorXd& q_middle)
 {
   if (body.model.free_link)
-    moveFreeLinkToMidpoint(body, dt);
+    moveFreeLinkToMidpoint(body, q, v, dt, q_middle);
   else
-    integrate(body.model.tree, body.state.q, body.state.v, 0.5 * dt, body.q_middle);
+    integrate(body.model.tree, q, v, 0.5 * dt, q_middle);
+}
+
+void moveToMidpoint(Body& body, double dt)
+{
+  moveHalfStep(body, body.state.q, body.state.v, dt, body.q_middle);
   body.middle.base_pose = basePose(body, 0.5 * dt);
   forwardKinematics(body.model.tree, body.q_middle, body.middle);
   computeMassMatrix(body.model.tree, body.middle);
@@ -206,15 +212,21 @@ void setStartVelocity(Body& body, bool impact)
     body.v_start = body.state.v;
 }
 
-void moveToEnd(Body& body, const VectorIn& v, double dt)
+void moveStep(const Body& body, const VectorIn& v, double dt, Eigen::VectorXd& q_end, Eigen::VectorXd& v_end)
 {
   if (body.model.free_link)
-    moveFreeLinkToEnd(body, v, dt);
-  else
   {
-    body.state.v = v;
-    integrate(body.model.tree, body.state.q, body.v_middle, dt, body.state.q);
+    moveFreeLinkToEnd(body, v, dt, q_end, v_end);
+    return;
   }
+  v_end = 0.5 * (body.v_start + v);
+  integrate(body.model.tree, body.state.q, v_end, dt, q_end);
+  v_end = v;
+}
+
+void moveToEnd(Body& body, const VectorIn& v, double dt)
+{
+  moveStep(body, v, dt, body.state.q, body.state.v);
   body.state.base_pose = basePose(body, dt);
   updateEnd(body);
 }

@@ -23,12 +23,15 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
   return result;
 }
 
-NormalShift impactShift(double gap, double old_velocity, double restitution)
+NormalShift impactShift(double gap, double old_velocity, double restitution, double dt)
 {
   NormalShift result;
-  result.active = gap <= CONTACT_GAP;
+  result.active = gap <= CONTACT_GAP || gap + 0.5 * dt * old_velocity < 0.0;
   result.closing = result.active && old_velocity < 0.0;
-  result.shift = restitution * std::min(old_velocity, 0.0);
+  if (restitution > 0.0 || gap <= CONTACT_GAP)
+    result.shift = restitution * std::min(old_velocity, 0.0);
+  else
+    result.shift = 2.0 * gap / dt;
   return result;
 }
 

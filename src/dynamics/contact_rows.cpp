@@ -62,13 +62,14 @@ Eigen::Vector3d baseVelocity(const std::vector<Body>& bodies, const ShapeInfo& s
 }
 
 ContactRows::ContactRows(const std::vector<Body>& bodies, const CollisionWorld& world, const PairTable& pairs,
-                         std::vector<ContactState>& contacts, CreepRows* creep)
-  : bodies_(bodies), world_(world), pairs_(pairs), contacts_(contacts), creep_(creep)
+                         std::vector<ContactState>& contacts, CreepRows* creep, ContactSet* set)
+  : bodies_(bodies), world_(world), pairs_(pairs), contacts_(contacts), creep_(creep), set_(set)
 {
 }
 
 void ContactRows::begin(const StepContext&)
 {
+  answer_.clear();
   index_.clear();
   for (size_t i = 0; i < contacts_.size(); ++i)
     index_.emplace_back(contacts_[i].id, static_cast<int>(i));
@@ -147,9 +148,13 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
 
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
-  const NormalShift shift =
-      context.impact ? impactShift(point.gap, old_normal, material.restitution)
-                     : normalShift(context.normal_law, point.gap, old_normal, material.restitution, context.dt);
+  NormalShift shift;
+  if (point.is_linearised)
+    shift.shift = point.row_gap / context.dt;
+  else if (context.impact)
+    shift = impactShift(point.gap, old_normal, material.restitution, context.dt);
+  else
+    shift = normalShift(context.normal_law, point.gap, old_normal, material.restitution, context.dt);
   if (!shift.active || !movesAlong(point.normal))
     return;
   contact.friction = material.friction;
@@ -194,13 +199,58 @@ void ContactRows::guess(const StepContext& context, Solution& guess) const
   for (const ContactRow& row : rows_)
   {
     const ContactPoint& point = (*context.points)[row.point];
-    const ContactState* last_contact = last(point.id);
-    if (last_contact == nullptr || row.closing)
+    const Eigen::Vector3d* impulse = nullptr;
+    if (answer_.empty())
+    {
+      const ContactState* last_contact = last(point.id);
+      impulse = last_contact == nullptr || row.closing ? nullptr : &last_contact->impulse;
+    }
+    else
+    {
+      const auto entry = std::lower_bound(answer_.begin(), answer_.end(), point.id,
+                                          [](const auto& a, const ContactId& id) { return a.first < id; });
+      impulse = entry != answer_.end() && entry->first == point.id ? &entry->second : nullptr;
+    }
+    if (impulse == nullptr)
       continue;
-    guess.r[row.row] = point.normal.dot(last_contact->impulse);
-    guess.r[row.row + 1] = row.tangent_1.dot(last_contact->impulse);
-    guess.r[row.row + 2] = row.tangent_2.dot(last_contact->impulse);
+    guess.r[row.row] = point.normal.dot(*impulse);
+    guess.r[row.row + 1] = row.tangent_1.dot(*impulse);
+    guess.r[row.row + 2] = row.tangent_2.dot(*impulse);
   }
+}
+
+Again ContactRows::lookAhead(const StepContext& context, const Solution& solution)
+{
+  if (set_ == nullptr)
+    return Again::NO;
+  normal_impulses_.assign(context.points->size(), std::numeric_limits<double>::quiet_NaN());
+  answer_.clear();
+  for (const ContactRow& row : rows_)
+  {
+    const ContactPoint& point = (*context.points)[row.point];
+    const Eigen::Vector3d r = solution.r.segment<3>(row.row);
+    normal_impulses_[row.point] = r[0];
+    answer_.emplace_back(point.id, r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2);
+  }
+  switch (set_->lookAgain(context, solution.v, normal_impulses_))
+  {
+    case ContactSet::Look::CONTENT:
+      return Again::NO;
+    case ContactSet::Look::CHANGED:
+      return Again::FROM_ANSWER;
+    case ContactSet::Look::GIVEN_UP:
+      break;
+  }
+  return Again::NEVER;
+}
+
+void ContactRows::markActing(std::vector<char>& bodies) const
+{
+  for (const ContactState& contact : contacts_)
+    if (contact.mode != ContactMode::IMPACT && !contact.impulse.isZero(0.0))
+      for (const int handle : {contact.shape_a, contact.shape_b})
+        if (const int body = world_.shape(handle).body; body >= 0)
+          bodies[body] = 1;
 }
 
 void ContactRows::accept(const StepContext& context, const StepAnswer& answer)

@@ -21,10 +21,20 @@ CreepRows::CreepRows(const std::vector<Body>& bodies, const CollisionWorld& worl
   }
 }
 
-void CreepRows::begin(const StepContext& context)
+void CreepRows::begin(const StepContext&)
 {
-  points_.assign(context.points->size(), CreepPoint{});
+  points_.clear();
   iterations_ = 0;
+}
+
+/** Where the curve of a contact was linearised last in this step; of a new one, nowhere yet. */
+CreepPoint& CreepRows::pointOf(const ContactId& id)
+{
+  const auto found = std::lower_bound(points_.begin(), points_.end(), id,
+                                      [](const auto& a, const ContactId& b) { return a.first < b; });
+  if (found != points_.end() && found->first == id)
+    return found->second;
+  return points_.insert(found, {id, CreepPoint{}})->second;
 }
 
 void CreepRows::clear()
@@ -89,7 +99,7 @@ void CreepRows::bend(const StepContext& context, const CreepTable& curve, const 
   for (const auto& [column, motion] : columns_)
     rolling_rows_.push(column, contact.tangent_1.dot(motion));
   rolling_rows_.endRow();
-  CreepPoint& at = points_[contact.point];
+  CreepPoint& at = pointOf(point.id);
   if (!at.known)
   {
     at.slip = contact.tangent_1.dot(velocity);
@@ -97,7 +107,7 @@ void CreepRows::bend(const StepContext& context, const CreepTable& curve, const 
     at.speed = speed;
   }
   contact.creep = creepTangent(curve, contact.friction, at);
-  bent_.push_back({contact.point, contact.row, contact.friction, contact.creep, &curve, contact.tangent_1.dot(base)});
+  bent_.push_back({point.id, contact.row, contact.friction, contact.creep, &curve, contact.tangent_1.dot(base)});
 }
 
 /** Moves the linearisation to the solution; solve again where the tangents missed the law there. */
@@ -110,7 +120,7 @@ Again CreepRows::again(const StepContext& context, const Solution& solution, boo
   for (size_t i = 0; i < bent_.size(); ++i)
   {
     const Bent& contact = bent_[i];
-    CreepPoint& at = points_[contact.point];
+    CreepPoint& at = pointOf(contact.id);
     const double last_slip = at.slip;
     const double traction = -solution.r[contact.row + 1];
     const double compliance = contact.tangent.compliance;

@@ -106,13 +106,13 @@ bool isIsotropic(const MultibodyModel& model)
   return (inertia - moment * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= ISOTROPIC * moment;
 }
 
-void moveFreeLinkToMidpoint(Body& body, double dt)
+void moveFreeLinkToMidpoint(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
+                            Eigen::VectorXd& q_middle)
 {
-  const BodyState& state = body.state;
-  const Eigen::Vector3d angular = state.v.tail<3>();
-  const Eigen::Vector3d arm = orientation(state.q) * inertiaOf(body).center;
-  const Eigen::Vector3d center_velocity = state.v.head<3>() + angular.cross(arm);
-  moveAboutCenter(body, 0.5 * dt * center_velocity, 0.5 * dt * angular, state.q, body.q_middle);
+  const Eigen::Vector3d angular = v.tail<3>();
+  const Eigen::Vector3d arm = orientation(q) * inertiaOf(body).center;
+  const Eigen::Vector3d center_velocity = v.head<3>() + angular.cross(arm);
+  moveAboutCenter(body, 0.5 * dt * center_velocity, 0.5 * dt * angular, q, q_middle);
 }
 
 void mapFreeLinkStart(Body& body)
@@ -157,21 +157,23 @@ void computeFreeLinkBias(const Body& body, const Eigen::VectorXd& v, const Eigen
   bias.tail<3>() = -momentum.cross(image) - arm.cross(weight);
 }
 
-void moveFreeLinkToEnd(Body& body, const Eigen::Ref<const Eigen::VectorXd>& v, double dt)
+void moveFreeLinkToEnd(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& v, double dt, Eigen::VectorXd& q_end,
+                       Eigen::VectorXd& v_end)
 {
   const Eigen::Vector3d& center = inertiaOf(body).center;
   const Eigen::Matrix3d turn_m = axes(body, body.q_middle);
   const Eigen::Vector3d arm_m = orientation(body.q_middle) * center;
   const Eigen::Vector3d image = v.tail<3>();
-  const Eigen::Vector3d mean_image = body.v_middle.tail<3>();
+  const Eigen::Vector3d mean_linear = 0.5 * (body.v_start.head<3>() + v.head<3>());
+  const Eigen::Vector3d mean_image = 0.5 * (body.v_start.tail<3>() + image);
   const Eigen::Vector3d center_velocity = v.head<3>() + image.cross(arm_m);
-  const Eigen::Vector3d mean_velocity = body.v_middle.head<3>() + mean_image.cross(arm_m);
+  const Eigen::Vector3d mean_velocity = mean_linear + mean_image.cross(arm_m);
   const Eigen::Vector3d mean = axes(body, body.state.q) * turnBack(turn_m, mean_image);
   const Eigen::Vector3d spin = turnBack(turn_m, image);
-  moveAboutCenter(body, dt * mean_velocity, dt * mean, body.state.q, body.state.q);
-  const Eigen::Vector3d angular = axes(body, body.state.q) * spin;
-  body.state.v.head<3>() = center_velocity - angular.cross(orientation(body.state.q) * center);
-  body.state.v.tail<3>() = angular;
+  moveAboutCenter(body, dt * mean_velocity, dt * mean, body.state.q, q_end);
+  const Eigen::Vector3d angular = axes(body, q_end) * spin;
+  v_end.head<3>() = center_velocity - angular.cross(orientation(q_end) * center);
+  v_end.tail<3>() = angular;
 }
 
 }  // namespace frictional_contact_sim

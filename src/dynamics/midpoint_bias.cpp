@@ -33,8 +33,25 @@ void StepAssembly::findActing(const Solution& solution)
   mark(problem_.G, solution.lambda);
 }
 
-/** Body::v_free, its speeds, and bias at the first guess of the mean velocity (or at that of an answer). */
-void StepAssembly::predict(const StepContext& context, Body& body, const Solution* answer)
+/** Which bodies an impulse of the last step touches. */
+void StepAssembly::findLastActing(const StepContext& context)
+{
+  std::fill(acting_.begin(), acting_.end(), 0);
+  if (context.impact)
+    return;
+  for (const RowMemory& memory : state_.memory)
+  {
+    const size_t width = memory.impulses.size() / std::max<size_t>(1, joint_body_.size());
+    for (size_t i = 0; i < memory.impulses.size(); ++i)
+      if (memory.impulses[i] != 0.0)
+        acting_[joint_body_[i / width]] = 1;
+  }
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    source->markActing(acting_);
+}
+
+/** Body::v_free, its speeds, and bias at the first guess of the mean velocity. */
+void StepAssembly::predict(const StepContext& context, Body& body)
 {
   const MultibodyModel& tree = body.model.tree;
   const auto momentum = momentum_.segment(body.v_offset, tree.nv);
@@ -49,12 +66,6 @@ void StepAssembly::predict(const StepContext& context, Body& body, const Solutio
   else
     move(body.v_free);
   setSpeeds(body);
-  if (answer)
-  {
-    body.v_middle = 0.5 * (body.v_start + answer->v.segment(body.v_offset, tree.nv));
-    computeBias(body, body.v_middle, context.gravity, body.bias);
-    return;
-  }
   if (acting_[body_of_[body.v_offset]])
     return;
   const double allowed = std::max(context.tolerance, BIAS_ROUND_OFF) * body.speed_change;
@@ -133,7 +144,9 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
     worst = std::max(worst, miss);
     if (miss == 0.0 || last)
       continue;
-    problem_.f.segment(body.v_offset, nv) += context.dt * (body.next_bias - body.bias);
+    auto force = force_.segment(body.v_offset, nv);
+    force += context.dt * (body.next_bias - body.bias);
+    problem_.f.segment(body.v_offset, nv) = force;
     body.bias = body.next_bias;
   }
   if (worst == 0.0 || (last && worst < UNSETTLED))

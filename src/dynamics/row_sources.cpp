@@ -31,7 +31,8 @@ JointMemory::JointMemory(const char* name, int impulses_a_joint, const std::vect
 }
 
 std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies, const CollisionWorld& world,
-                                                       const PairTable& pairs, RowState& state)
+                                                       const PairTable& pairs, RowState& state,
+                                                       ContactSet* contacts)
 {
   std::unique_ptr<CreepRows> creep;
   if (pairs.hasCreep())
@@ -45,7 +46,7 @@ std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies
     return state.memory.emplace_back();
   };
   std::vector<std::unique_ptr<RowSource>> sources;
-  sources.push_back(std::make_unique<ContactRows>(bodies, world, pairs, state.contacts, creep.get()));
+  sources.push_back(std::make_unique<ContactRows>(bodies, world, pairs, state.contacts, creep.get(), contacts));
   sources.push_back(std::make_unique<LimitRows>(bodies, memory()));
   sources.push_back(std::make_unique<DryFrictionRows>(bodies, memory()));
   sources.push_back(std::make_unique<ServoRows>(bodies, memory()));

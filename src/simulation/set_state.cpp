@@ -117,22 +117,30 @@ void Simulator::Impl::impactSolve()
 
 void Simulator::Impl::solveImpact()
 {
-  for (size_t b = 0; b < bodies.size(); ++b)
+  for (Body& body : bodies)
   {
-    Body& body = bodies[b];
     body.middle.base_pose = body.state.base_pose;
     forwardKinematics(body.model.tree, body.state.q, body.middle);
     computeMassMatrix(body.model.tree, body.middle);
-    collision.setPoses(static_cast<int>(b), body.middle);
   }
-  context.points = &collision.detect(2.0 * CONTACT_GAP);
   assembly.begin(context);
+  assembly.assembleForces(context);
+  context.points = &contact_set.find(context);
   assembly.assembleRows(context);
   if (!assembly.closing())
     return;
-  assembly.makeGuess(context, guess);
-  assembly.assembleDynamics(context, guess);
-  solver.solve(assembly.problem(), guess, result);
+  Again again = Again::FROM_GUESS;
+  do
+  {
+    if (again == Again::FROM_ANSWER)
+      assembly.assembleRows(context);
+    assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
+    assembly.assembleProblem(context);
+    solver.solve(assembly.problem(), guess, result);
+    again = result.status == SolverStatus::CONVERGED ? assembly.again(context, result.solution, true) : Again::NO;
+  } while (again == Again::FROM_ANSWER);
+  if (again == Again::NEVER)
+    setUnsatisfied();
   finishImpact();
 }
 

@@ -52,7 +52,8 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , state(makeState(*world))
   , bodies(makeBodies(*world, state))
   , context(makeContext(scenario))
-  , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows), state.rows)
+  , contact_set(bodies, collision, state.rows.contacts)
+  , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
   , solver(createSolver(scenario.solver), scenario.stopping, scenario.failure)
 {
   rememberGood();

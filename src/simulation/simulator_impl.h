@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
+#include "frictional_contact_sim/dynamics/contact_set.h"
 #include "frictional_contact_sim/math/union_find.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state.h"
@@ -20,11 +21,11 @@ struct Simulator::Impl
 
   // the step, in this order
   void moveToMidpoint();
-  const std::vector<double>& lookAhead();
   void solveStep();
   void advance();
   void finishStep();
 
+  void setUnsatisfied();
   void fail(SolverStatus status, const std::string& message);
   bool acceptable() const;  ///< whether ACCEPT may take the answer
   void take();  ///< the answer becomes the state
@@ -56,7 +57,7 @@ struct Simulator::Impl
   StepOutcome start_outcome;
   std::vector<Body> bodies;
   StepContext context;
-  std::vector<double> margins;  ///< of the contacts of each body [m]
+  ContactSet contact_set;
   StepAssembly assembly;
   StepSolver solver;
   std::string dump_folder;

@@ -11,7 +11,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always in the problem [m]
 /// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
@@ -31,7 +30,6 @@ const StepOutcome& Simulator::step()
   try
   {
     sim.moveToMidpoint();
-    sim.context.points = &sim.collision.detect(sim.lookAhead());
     sim.assembly.begin(sim.context);
     sim.solveStep();
   }
@@ -48,57 +46,38 @@ const StepOutcome& Simulator::step()
 void Simulator::Impl::moveToMidpoint()
 {
   const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
-  for (size_t b = 0; b < bodies.size(); ++b)
+  for (Body& body : bodies)
   {
-    Body& body = bodies[b];
     frictional_contact_sim::moveToMidpoint(body, context.dt);
-    collision.setPoses(static_cast<int>(b), body.middle);
     applyWrenches(body, middle);
   }
-}
-
-/** A body each: farther than any of its points can travel in two steps at the present velocities. */
-const std::vector<double>& Simulator::Impl::lookAhead()
-{
-  margins.clear();
-  for (const Body& body : bodies)
-  {
-    double fastest = 0.0;
-    for (size_t link = 0; link < body.model.tree.links.size(); ++link)
-    {
-      if (body.model.chains[link].empty() && !body.model.base_motion.active)
-        continue;
-      const Vector6d velocity = pointVelocity(body.end, static_cast<int>(link), body.end.link_pose[link].translation());
-      fastest = std::max(fastest, velocity.head<3>().norm() + velocity.tail<3>().norm() * body.model.extents[link]);
-    }
-    margins.push_back(MINIMUM_MARGIN + 2.0 * context.dt * fastest);
-  }
-  return margins;
 }
 
 void Simulator::Impl::solveStep()
 {
   Again again = Again::FROM_GUESS;
   int failed_rounds = 0;
+  context.points = nullptr;
   do
   {
-    if (again != Again::FORCES)
-    {
-      assembly.assembleRows(context);
-      assembly.makeGuess(context, guess);
-      const bool from_answer = again == Again::FROM_ANSWER;
-      const int singular = assembly.assembleDynamics(context, guess, from_answer ? &result.solution : nullptr);
-      if (singular >= 0)
+    if (again == Again::FROM_GUESS)
+      if (const int singular = assembly.assembleForces(context); singular >= 0)
       {
+        assembly.clear();
         fail(SolverStatus::NUMERICAL_FAILURE,
              "the mass matrix of body '" + bodies[singular].model.name + "' is not positive definite");
         return;
       }
-      if (from_answer && result.solution.r.size() == guess.r.size())
-        guess.r = result.solution.r;
-    }
-    else
+    if (context.points == nullptr)
+      context.points = &contact_set.find(context);
+    if (again == Again::FORCES)
       guess = result.solution;
+    else
+    {
+      assembly.assembleRows(context);
+      assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
+      assembly.assembleProblem(context);
+    }
     solver.solve(assembly.problem(), guess, result);
     again = Again::NO;
     failed_rounds += result.status != SolverStatus::CONVERGED;
@@ -108,11 +87,15 @@ void Simulator::Impl::solveStep()
   if (isMotion(result.solution))
     assembly.settleFreeLinks(result.solution);
   if (again == Again::NEVER)
-  {
-    result.status = SolverStatus::MAX_ITERATIONS;
-    result.message = std::string(assembly.unsatisfied()) + ": not met after the most repetitions of a step";
-  }
+    setUnsatisfied();
   solver.takeLeastNorm(assembly.problem(), result);
+}
+
+/** Solves converged, but not the rows' own law. */
+void Simulator::Impl::setUnsatisfied()
+{
+  result.status = SolverStatus::MAX_ITERATIONS;
+  result.message = std::string(assembly.unsatisfied()) + ": not met after the most repetitions of a step";
 }
 
 /** A step without an answer. */

@@ -56,9 +56,10 @@ public:
   }
   void assembleAgain()
   {
+    assembly_->assembleForces(context_);
     assembly_->assembleRows(context_);
     assembly_->makeGuess(context_, guess_);
-    assembly_->assembleDynamics(context_, guess_);
+    assembly_->assembleProblem(context_);
   }
   const std::vector<ContactPoint>& points() const { return points_; }
   /** A solution of the right shape, all zero. */

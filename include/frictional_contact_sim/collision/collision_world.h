@@ -32,6 +32,9 @@ struct ContactPoint
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world, midway between the two surface points [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< world, unit, from b to a
   double gap = 0.0;  ///< along the normal, negative = penetration [m]
+  /// Found elsewhere and carried to this pose: the gap that a row of it keeps is row_gap, see dynamics/contact_set.h.
+  bool is_linearised = false;
+  double row_gap = 0.0;  ///< [m]
 };
 
 /** @brief What a shape handle stands for. */
@@ -93,7 +96,9 @@ public:
    * after warm-up; the list is valid until the next call.
    */
   const std::vector<ContactPoint>& detect(double margin);
-  /** @brief The same with a margin a body; a pair has the larger of its two, so that no third body changes its points.
+  /**
+   * @brief The same with a margin a body; a pair has the larger of its two, so that no third body changes its points,
+   * and is not looked at where that is negative.
    */
   const std::vector<ContactPoint>& detect(const std::vector<double>& body_margins);
 

@@ -53,6 +53,18 @@ constexpr ContactId makeContactId(int shape_a, int shape_b, Feature feature_a, F
   return {(static_cast<std::uint64_t>(static_cast<std::uint32_t>(shape_a)) << 32) | static_cast<std::uint32_t>(shape_b),
           (static_cast<std::uint64_t>(feature_a) << 32) | feature_b};
 }
+constexpr FeatureKind kindOf(Feature feature)
+{
+  return static_cast<FeatureKind>(feature >> FEATURE_INDEX_BITS);
+}
+constexpr Feature featureA(const ContactId& id)
+{
+  return static_cast<Feature>(id.features >> 32);
+}
+constexpr Feature featureB(const ContactId& id)
+{
+  return static_cast<Feature>(id.features);
+}
 constexpr bool operator==(const ContactId& a, const ContactId& b)
 {
   return a.shapes == b.shapes && a.features == b.features;

@@ -10,7 +10,7 @@
  * v_m is the mean velocity (v_k + v_k+1)/2 of this very step; v_k is Body::v_start (an image for free links, whose bias
  * is another too: free_link.h). The first guess of it, body by body:
  *
- *     v_k                         where a row acted in the last step (the guess has an impulse on the body)
+ *     v_k                         where a row acted in the last step
  *     (v_k + v_free)/2            elsewhere, v_free = M^-1 (M v_k + c + dt (applied - bias((v_k + v_free)/2))): exact
  * where no row will act
  *
@@ -38,19 +38,20 @@ public:
   /** @brief Sizes everything; the bodies may not change in number afterwards, and outlive this. */
   StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_ptr<RowSource>> sources, RowState& state);
 
-  /** @brief Once a step (or impact), before assembleRows. Bodies' middle data are at q_m. Sets context.v_old. */
+  /** @brief Once a step (or impact), before anything else. Bodies' middle data are at q_m. Sets context.v_old. */
   void begin(StepContext& context);
-  /** @brief Rows H, w, G, b, laws of one step or impact. */
-  void assembleRows(const StepContext& context);
-  /** @brief v at the start, impulses of the last step. */
-  void makeGuess(const StepContext& context, Solution& guess) const;
   /**
-   * @brief M and f, after assembleRows; in an impact M v - M v_k = H^T r.
-   * @param guess which bodies it has impulses on decides the first guess of their mean velocity
-   * @param answer where rows have moved after a solve: the mean velocity comes from its v instead
+   * @brief What f is without rows: momentum, bias at the first guess of the mean velocity, what acts without a row; so
+   * Body::v_free and speeds. In an impact M v - M v_k = H^T r.
    * @return index of a body whose mass matrix is not positive definite, else -1
    */
-  int assembleDynamics(const StepContext& context, const Solution& guess, const Solution* answer = nullptr);
+  int assembleForces(const StepContext& context);
+  /** @brief Rows H, w, G, b, laws of one step or impact. */
+  void assembleRows(const StepContext& context);
+  /** @brief v at the start, impulses of the last step; of `answer` (of this step, before rows changed) where given. */
+  void makeGuess(const StepContext& context, Solution& guess, const Solution* answer = nullptr) const;
+  /** @brief M, f and the scales, after assembleForces and assembleRows. */
+  void assembleProblem(const StepContext& context);
   /** @brief A problem without rows and forces, in place of one that could not be assembled. */
   void clear();
 
@@ -80,8 +81,9 @@ public:
   double bilateralViolation() const;
 
 private:
-  bool assembleForces(const StepContext& context, int body, const Solution* answer);
-  void predict(const StepContext& context, Body& body, const Solution* answer);
+  bool assembleForces(const StepContext& context, int body);
+  void predict(const StepContext& context, Body& body);
+  void findLastActing(const StepContext& context);
   void findActing(const Solution& solution);
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
@@ -99,8 +101,12 @@ private:
   Eigen::VectorXd v_old_;  ///< velocities_: at the start of the step
   Eigen::VectorXd v_mean_;  ///< of the bodies, 0 for auxiliary columns
   Eigen::VectorXd momentum_;  ///< without bias, body by body
+  Eigen::VectorXd force_;  ///< velocities_: f
   std::vector<int> body_of_;  ///< velocities_: body of a column
-  std::vector<char> acting_;  ///< bodies: an impulse of the guess (or answer) acts on it
+  std::vector<int> joint_body_;  ///< body of every joint, as RowMemory counts them
+  std::vector<char> acting_;  ///< bodies: an impulse of the last step (or an answer) acts on it
+  int joint_rows_ = 0;  ///< first row of a joint; contacts come before
+  int last_joint_rows_ = 0;  ///< the same of the problem that was solved last
   int bias_rounds_ = 0;  ///< since rows changed last
   RowSink sink_;
   RowBuilder rows_m_;

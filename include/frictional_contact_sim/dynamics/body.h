@@ -101,13 +101,20 @@ Eigen::Isometry3d basePose(const Body& body, double dt);
 /** @brief Poses and velocities of `body.end` at (q, v). */
 void updateEnd(Body& body);
 
+/** @brief q_middle = q (+) dt/2 v of any state of the body. */
+void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
+                  Eigen::VectorXd& q_middle);
+
+/** @brief Where the answer `v` (nv) of a step ends: q_end, v_end may be the state's own. */
+void moveStep(const Body& body, const VectorIn& v, double dt, Eigen::VectorXd& q_end, Eigen::VectorXd& v_end);
+
 /** @brief Midpoint q (+) dt/2 v, its poses and mass matrix in `body.middle`. */
 void moveToMidpoint(Body& body, double dt);
 
 /** @brief v_start from the state. In an impact (no motion) the state's own velocity. Needs the midpoint. */
 void setStartVelocity(Body& body, bool impact);
 
-/** @brief State, base and `body.end` at the end of the step. Needs v_middle. @param v nv, the answer */
+/** @brief State, base and `body.end` at the end of the step. @param v nv, the answer */
 void moveToEnd(Body& body, const VectorIn& v, double dt);
 
 /** @brief Bias forces (nv) at mean velocity `v` of the step, in the problem's columns. Writes middle.link_velocity. */

@@ -37,8 +37,12 @@ struct NormalShift
 /** @brief The shift of one contact or joint limit. @param dt time step [s] > 0 */
 NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, double restitution, double dt);
 
-/** @brief The same for an impact at one instant (dt = 0): u_N >= -e min(u_old, 0) where gap <= CONTACT_GAP. */
-NormalShift impactShift(double gap, double old_velocity, double restitution);
+/**
+ * @brief The same for the impact at a given state, before the first step of length dt. Active where gap <= CONTACT_GAP
+ * or the first midpoint, gap + dt/2 u_old, is below zero: u_N >= -e u_old where e > 0 (and closing), else
+ * u_N >= -2 gap/dt, 0 for what touches.
+ */
+NormalShift impactShift(double gap, double old_velocity, double restitution, double dt);
 
 constexpr double CONTACT_GAP = 1e-9;  ///< closer than this is touching, for the impact solve at a given state [m]
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "frictional_contact_sim/dynamics/contact_set.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/creep_law.h"
 #include "frictional_contact_sim/dynamics/pair_table.h"
@@ -42,15 +43,18 @@ public:
   /**
    * @param contacts of the last step; this one's after accept()
    * @param creep bends contacts of a pair with the creep law; nullptr where no pair has it
+   * @param set chooses the points and looks at answers; nullptr: the points of the context as they are
    */
   ContactRows(const std::vector<Body>& bodies, const CollisionWorld& world, const PairTable& pairs,
-              std::vector<ContactState>& contacts, CreepRows* creep);
+              std::vector<ContactState>& contacts, CreepRows* creep, ContactSet* set = nullptr);
 
   const char* name() const override { return "contacts"; }
   void clear() override { rows_.clear(); }
   void begin(const StepContext& context) override;
   void addRows(const StepContext& context, RowSink& sink) override;
   void guess(const StepContext& context, Solution& guess) const override;
+  Again lookAhead(const StepContext& context, const Solution& solution) override;
+  void markActing(std::vector<char>& bodies) const override;
   void accept(const StepContext& context, const StepAnswer& answer) override;
 
 private:
@@ -66,6 +70,9 @@ private:
   const PairTable& pairs_;
   std::vector<ContactState>& contacts_;
   CreepRows* creep_;
+  ContactSet* set_;
+  std::vector<std::pair<ContactId, Eigen::Vector3d>> answer_;  ///< impulses of this step's last answer, sorted; or none
+  std::vector<double> normal_impulses_;  ///< one a point; NaN without a row
   std::vector<std::pair<ContactId, int>> index_;  ///< id to position in contacts_, sorted
   std::vector<ContactRow> rows_;
   PointColumns columns_a_;

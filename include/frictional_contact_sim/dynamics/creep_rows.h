@@ -38,7 +38,7 @@ private:
   /** One contact on its tangent; its row of rolling_rows_ has the same index. */
   struct Bent
   {
-    int point;  ///< index of the detected point
+    ContactId id;
     int row;  ///< first row
     double friction;
     CreepTangent tangent;
@@ -49,11 +49,13 @@ private:
   Eigen::Vector3d addRollingSide(const ContactPoint& point, const ShapeInfo& shape, double weight,
                                  const Eigen::Matrix3d& spin);
 
+  CreepPoint& pointOf(const ContactId& id);
+
   const std::vector<Body>& bodies_;
   const CollisionWorld& world_;
   std::vector<RollingShape> shapes_;  ///< one a shape handle
   int iterations_ = 0;  ///< in this step
-  std::vector<CreepPoint> points_;  ///< one a detected point, kept over the iterations of a step
+  std::vector<std::pair<ContactId, CreepPoint>> points_;  ///< by id, kept over the iterations of a step
   std::vector<Bent> bent_;
   RowBuilder rolling_rows_;  ///< rolling speed along the rolling direction, by generalized velocity
   PointColumns columns_;

@@ -44,8 +44,9 @@ bool isFreeLink(const MultibodyModel& model);
 /** @brief Whether the root link's principal moments are equal. */
 bool isIsotropic(const MultibodyModel& model);
 
-/** @brief Body::q_middle of a free link. */
-void moveFreeLinkToMidpoint(Body& body, double dt);
+/** @brief Half a step from (q, v), state velocities. @param q_middle 7 */
+void moveFreeLinkToMidpoint(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
+                            Eigen::VectorXd& q_middle);
 
 /** @brief Body::v_start, the image of the state's velocity at the midpoint pose; needs q_middle. */
 void mapFreeLinkStart(Body& body);
@@ -57,7 +58,11 @@ void moveFreely(Body& body, const Eigen::Vector3d& gravity, double dt);
 void computeFreeLinkBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
                          Eigen::VectorXd& bias);
 
-/** @brief State q, v from Body::v_middle and the answer `v` (6), an image. */
-void moveFreeLinkToEnd(Body& body, const Eigen::Ref<const Eigen::VectorXd>& v, double dt);
+/**
+ * @brief The end of a step from the state. @param v 6, the answer, an image @param q_end 7 @param v_end 6, of the
+ * origin in world axes; both may be the state's own
+ */
+void moveFreeLinkToEnd(const Body& body, const Eigen::Ref<const Eigen::VectorXd>& v, double dt, Eigen::VectorXd& q_end,
+                       Eigen::VectorXd& v_end);
 
 }  // namespace frictional_contact_sim

@@ -86,8 +86,8 @@ inline RowUnit jointUnit(const Body& body, int joint)
 enum class Again
 {
   NO,
-  FROM_GUESS,  ///< rows have changed: from the warm start
-  FROM_ANSWER,  ///< rows have moved a little: from the last answer
+  FROM_GUESS,  ///< rows and forces have changed: from the warm start
+  FROM_ANSWER,  ///< rows have moved, or there are more of them; forces stand: from the last answer
   FORCES,  ///< f alone is another, and in the problem already: from the last answer
   NEVER  ///< the rows' own law could not be met: the step has failed
 };
@@ -113,6 +113,13 @@ public:
   virtual void guess(const StepContext&, Solution&) const {}
   /** @brief Asked in turn after a solve, until one says other than NO. @param converged the solve's verdict */
   virtual Again again(const StepContext&, const Solution&, bool /*converged*/) { return Again::NO; }
+  /**
+   * @brief Asked in turn once all of the above and the bias are content with an answer: whether it meets what there was
+   * no row for, or a row that has bent away from what it stands for.
+   */
+  virtual Again lookAhead(const StepContext&, const Solution&) { return Again::NO; }
+  /** @brief Marks the bodies (by index) that an impulse of the last step acts on, beyond what RowMemory says. */
+  virtual void markActing(std::vector<char>&) const {}
   /** @brief The step is done: take from the answer what is reported or kept. */
   virtual void accept(const StepContext&, const StepAnswer&) {}
   /** @brief Work of what addMomentum added for one body. Body::v_middle is the mean of old and new velocity. */

@@ -1,0 +1,132 @@
+#pragma once
+/**
+ * @file contact_set.h
+ * @brief Which contact points a step has rows for: chosen from its free motion, then mended by looking at its answers.
+ *
+ * The law is gap >= 0 for every point of a body, not for chosen ones. A step starts with the points that its free motion
+ * could close. Every answer is then looked at with the true geometry at both poses it leads to,
+ *
+ *     q_k+1 = q_k (+) dt (v_k + v_k+1)/2      and the next midpoint      q_n = q_k+1 (+) dt/2 v_k+1
+ *
+ * (a gap row speaks of the next midpoint: gap_m + dt u_N is the gap there to second order). What is missing or has bent
+ * away gets a row, and the step is solved again from its answer:
+ *
+ *  - a point known at q_m whose gap_m + dt u_N is negative and that has no row gets the usual one;
+ *  - a point that overlaps at one of the poses gets a row linearised there (anew, where it has one already): with its
+ *    normal and place carried back to q_m by the link that owns them, and u* the answer's velocity along that normal,
+ *
+ *        gap(v) = gap* + s dt (u_N(v) - u*) >= allowed,      s = 1 at q_n, 1/2 at q_k+1
+ *
+ *    allowed is 0, or how deep the pair was at q_m already;
+ *  - a *ghost* is a row without which the step, solved again, still keeps every gap at both poses (a wheel that rolls
+ *    over the seam of two coplanar boxes meets one): it carries nothing. Looked for once among points that carry an
+ *    impulse, had a gap at q_m, carried none in the last step and do not touch at q_n. One that is then violated
+ *    comes back, linearised, and stays.
+ *
+ * At most 10 rounds a step. Source: ../shared/DESIGN.md, "Nothing goes through".
+ */
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "frictional_contact_sim/collision/collision_world.h"
+#include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/contact_state.h"
+
+namespace frictional_contact_sim
+{
+struct StepContext;
+
+class ContactSet
+{
+public:
+  /** @param last contacts of the last step. All three outlive this. */
+  ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const std::vector<ContactState>& last);
+
+  /**
+   * @brief The points of a step (impact) that its free motion could close; bodies stand at q_m with v_start, v_free and
+   * speed known. Poses of the world are set. Ordered by id; the list changes with lookAgain only.
+   */
+  const std::vector<ContactPoint>& find(const StepContext& context);
+
+  enum class Look
+  {
+    CONTENT,
+    CHANGED,  ///< the points are others: solve again
+    GIVEN_UP  ///< after the most rounds still more than a trace goes through
+  };
+  /**
+   * @param v velocities of all bodies, an answer
+   * @param impulses normal impulse of each point of the list; NaN where it has no row (nothing moves along its normal)
+   */
+  Look lookAgain(const StepContext& context, const Eigen::VectorXd& v, const std::vector<double>& impulses);
+
+  const std::vector<ContactPoint>& points() const { return points_; }
+  /** @brief How often the points of this step were changed. */
+  int rounds() const { return rounds_; }
+
+private:
+  enum class Use : char
+  {
+    IDLE,  ///< no row
+    ROW,
+    LINEARISED,  ///< a row that stays
+    DROPPED,  ///< was taken for a ghost: only its true gap brings it back
+    HOPELESS  ///< no motion changes its gap
+  };
+  struct Candidate
+  {
+    ContactPoint point;
+    Use use = Use::IDLE;
+    double impulse = 0.0;  ///< of the answer
+    int round = 0;  ///< that linearised it last
+  };
+  /// A body where an answer takes it.
+  struct Ahead
+  {
+    explicit Ahead(const Body& body);
+    Eigen::VectorXd v;  ///< the answer
+    Eigen::VectorXd q_end;
+    Eigen::VectorXd v_end;
+    Eigen::VectorXd q;  ///< next midpoint; of an impact the first
+    MultibodyData data;
+  };
+
+  static double baseSpeed(const Body& body);
+  template <class Velocities>
+  double normalSpeed(const ContactPoint& point, const Velocities& velocities) const;
+  bool mayClose(const StepContext& context, const ContactPoint& point) const;
+  bool carriedBefore(const ContactId& id) const;
+  double sizeOf(const ContactPoint& point) const;
+  void detectAtMiddle(const StepContext& context);
+  void addCandidate(const ContactPoint& point, Use use);
+  void sortCandidates();
+  Candidate* known(const ContactId& id);
+  void takePoints();
+  bool setAnswer(const StepContext& context, const Eigen::VectorXd& v);
+  bool addClosing(const StepContext& context);
+  void moveAhead(const StepContext& context);
+  void setPosesAhead(const StepContext& context, bool at_end);
+  double allowedGap(int shape_a, int shape_b) const;
+  bool mend(const StepContext& context, double share);
+  ContactPoint linearised(const StepContext& context, const ContactPoint& found, double missing, double share) const;
+  bool dropGhosts();
+
+  std::vector<Body>& bodies_;
+  CollisionWorld& world_;
+  const std::vector<ContactState>& last_;
+  std::vector<ContactId> carried_;  ///< points with an impulse in the last step, sorted
+  std::vector<Candidate> candidates_;  ///< ordered by id
+  std::ptrdiff_t candidates_at_middle_ = 0;  ///< of those, the ones before a search ahead added more
+  std::vector<ContactId> touching_;  ///< points without a gap at the pose searched last
+  std::vector<ContactPoint> points_;
+  std::vector<double> margins_;  ///< that q_m was searched with [m]
+  std::vector<double> speeds_;  ///< bodies: largest speed of a point, of the free motion or the answer [m/s]
+  std::vector<double> margins_ahead_;
+  std::vector<Ahead> ahead_;
+  int rounds_ = 0;
+  bool ghosts_tried_ = false;
+  double worst_ = 0.0;  ///< of the last look: deepest that is not allowed, in units of its size
+};
+
+}  // namespace frictional_contact_sim
