@@ -18,6 +18,7 @@ constexpr double CLOSING_MARGIN = 2.0;  ///< times what the free motion closes o
 constexpr double OVERLAP = 1e-9;  ///< times the size: what may go through
 constexpr double STILL = 1e-12;  ///< what moves less than this in a step closes no gap [m]
 constexpr double TOUCHING = 1e-12;  ///< a gap ahead that is zero [m]
+constexpr double NEAR = 1e-2;  ///< times the size: of points nearer than this the deepest gets a row first
 constexpr int MOST_ROUNDS = 10;
 constexpr double TRACE = 1e-6;  ///< times the size: left after the most rounds, it is not worth the step
 constexpr double UNSEEN = -1.0;  ///< margin of a pair that is not looked at
@@ -149,7 +150,7 @@ ContactSet::Candidate* ContactSet::known(const ContactId& id)
 const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
 {
   rounds_ = 0;
-  ghosts_tried_ = false;
+  ghosts_tried_ = is_last_ = false;
   carried_.clear();
   for (const ContactState& contact : last_)
     if (!contact.impulse.isZero(0.0))
@@ -177,7 +178,7 @@ void ContactSet::takePoints()
 ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::VectorXd& v,
                                        const std::vector<double>& impulses)
 {
-  if (context.normal_law.form == ContactLawForm::VELOCITY || !setAnswer(context, v))
+  if (is_last_ || context.normal_law.form == ContactLawForm::VELOCITY || !setAnswer(context, v))
     return Look::CONTENT;
   size_t next = 0;
   for (Candidate& candidate : candidates_)
@@ -207,8 +208,18 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
   if (rounds_ == MOST_ROUNDS)
     return worst_ > TRACE ? Look::GIVEN_UP : Look::CONTENT;
   ++rounds_;
+  last_points_.swap(points_);
   takePoints();
   return Look::CHANGED;
+}
+
+bool ContactSet::goBack()
+{
+  if (rounds_ == 0 || is_last_ || worst_ > TRACE)
+    return false;
+  is_last_ = true;
+  points_.swap(last_points_);
+  return true;
 }
 
 /** The answer's velocities and speeds. @return whether anything moves */
@@ -292,8 +303,8 @@ double ContactSet::allowedGap(int shape_a, int shape_b) const
   {
     return candidate.point.shape_a != shape_a ? candidate.point.shape_a < shape_a : candidate.point.shape_b < shape_b;
   };
-  const auto first = std::partition_point(candidates_.begin(), candidates_.begin() + candidates_at_middle_, isBefore);
-  for (auto candidate = first; candidate != candidates_.begin() + candidates_at_middle_; ++candidate)
+  const auto first = std::partition_point(candidates_.begin(), candidates_.end(), isBefore);
+  for (auto candidate = first; candidate != candidates_.end(); ++candidate)
   {
     if (candidate->point.shape_a != shape_a || candidate->point.shape_b != shape_b)
       break;
@@ -303,38 +314,63 @@ double ContactSet::allowedGap(int shape_a, int shape_b) const
   return deepest;
 }
 
+/** What overlaps at the poses set, by pair, the deepest first. */
+void ContactSet::findOverlaps()
+{
+  touching_pairs_.clear();
+  overlaps_.clear();
+  for (const ContactPoint& point : world_.detect(margins_ahead_))
+  {
+    if (touching_pairs_.empty() || touching_pairs_.back() != point.id.shapes)
+      touching_pairs_.push_back(point.id.shapes);
+    const double tolerance = OVERLAP * sizeOf(point);
+    if (point.gap >= -tolerance)
+      continue;
+    const double missing = point.gap - allowedGap(point.shape_a, point.shape_b);
+    if (missing < -tolerance)
+      overlaps_.push_back({point, missing});
+  }
+  std::stable_sort(overlaps_.begin(), overlaps_.end(),
+                   [](const Overlap& a, const Overlap& b)
+                   {
+                     return a.point.id.shapes != b.point.id.shapes ? a.point.id.shapes < b.point.id.shapes
+                                                                   : a.missing < b.missing;
+                   });
+}
+
 /** Rows for what overlaps at the poses set. @param share of the step from q_m to them */
 bool ContactSet::mend(const StepContext& context, double share)
 {
+  findOverlaps();
   bool mended = false;
-  candidates_at_middle_ = static_cast<std::ptrdiff_t>(candidates_.size());
-  touching_.clear();
-  for (const ContactPoint& point : world_.detect(margins_ahead_))
+  size_t first = 0;  // of the pair
+  for (size_t i = 0; i < overlaps_.size(); ++i)
   {
-    touching_.push_back(point.id);
-    const double size = sizeOf(point);
-    if (point.gap >= -OVERLAP * size)
+    const Overlap& overlap = overlaps_[i];
+    if (overlap.point.id.shapes != overlaps_[first].point.id.shapes)
+      first = i;
+    const double size = sizeOf(overlap.point);
+    Candidate* candidate = known(overlap.point.id);
+    if (candidate != nullptr && (candidate->use == Use::HOPELESS || candidate->round == rounds_ + 1))
       continue;
-    const double missing = point.gap - allowedGap(point.shape_a, point.shape_b);
-    if (missing >= -OVERLAP * size)
-      continue;
-    Candidate* candidate = known(point.id);
-    if (candidate != nullptr &&
-        (candidate->use == Use::HOPELESS || (candidate->use == Use::LINEARISED && candidate->round == rounds_ + 1)))
-      continue;
-    worst_ = std::max(worst_, -missing / size);
-    mended = true;
-    const ContactPoint row = linearised(context, point, missing, share);
+    worst_ = std::max(worst_, -overlap.missing / size);
+    const bool has_row = candidate != nullptr && (candidate->use == Use::ROW || candidate->use == Use::LINEARISED);
+    const auto isNear = [&](const Overlap& other)
+    { return (other.point.position - overlap.point.position).norm() < NEAR * size; };
+    if (!has_row && std::any_of(overlaps_.begin() + static_cast<std::ptrdiff_t>(first),
+                                overlaps_.begin() + static_cast<std::ptrdiff_t>(i), isNear))
+      continue;  // a deeper one beside it speaks for it
     if (candidate == nullptr)
     {
-      addCandidate(row, Use::LINEARISED);
-      candidate = &candidates_.back();
+      addCandidate(overlap.point, Use::IDLE);
+      sortCandidates();
+      candidate = known(overlap.point.id);
     }
-    candidate->point = row;
+    candidate->point = linearised(context, overlap.point, overlap.missing, share);
     candidate->use = Use::LINEARISED;
     candidate->round = rounds_ + 1;
+    mended = true;
   }
-  sortCandidates();
   return mended;
 }
 
@@ -372,18 +408,17 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
   return row;
 }
 
-/** Rows that may be ghosts lose theirs. Poses and touching_ are those of the next midpoint. */
+/** Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. */
 bool ContactSet::dropGhosts()
 {
   if (ghosts_tried_)
     return false;
   ghosts_tried_ = true;
   bool dropped = false;
-  std::sort(touching_.begin(), touching_.end());
   for (Candidate& candidate : candidates_)
     if (candidate.use == Use::ROW && candidate.impulse > 0.0 &&
         candidate.point.gap > OVERLAP * sizeOf(candidate.point) && !carriedBefore(candidate.point.id) &&
-        !std::binary_search(touching_.begin(), touching_.end(), candidate.point.id))
+        !std::binary_search(touching_pairs_.begin(), touching_pairs_.end(), candidate.point.id.shapes))
     {
       candidate.use = Use::DROPPED;
       dropped = true;

@@ -83,6 +83,9 @@ void Simulator::Impl::solveStep()
     failed_rounds += result.status != SolverStatus::CONVERGED;
     if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
+    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED &&
+        contact_set.goBack())
+      again = Again::FROM_GUESS;
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
   if (isMotion(result.solution))
     assembly.settleFreeLinks(result.solution);

@@ -61,6 +61,12 @@ public:
    */
   Look lookAgain(const StepContext& context, const Eigen::VectorXd& v, const std::vector<double>& impulses);
 
+  /**
+   * @brief The points before the last change: where the solve with the new ones has failed and only a trace (1e-6 of the
+   * size) went through without them. Answers are not looked at again in this step. @return false: no such points
+   */
+  bool goBack();
+
   const std::vector<ContactPoint>& points() const { return points_; }
   /** @brief How often the points of this step were changed. */
   int rounds() const { return rounds_; }
@@ -92,6 +98,12 @@ private:
     MultibodyData data;
   };
 
+  struct Overlap
+  {
+    ContactPoint point;
+    double missing;  ///< gap minus what is allowed [m] < 0
+  };
+
   static double baseSpeed(const Body& body);
   template <class Velocities>
   double normalSpeed(const ContactPoint& point, const Velocities& velocities) const;
@@ -108,6 +120,7 @@ private:
   void moveAhead(const StepContext& context);
   void setPosesAhead(const StepContext& context, bool at_end);
   double allowedGap(int shape_a, int shape_b) const;
+  void findOverlaps();
   bool mend(const StepContext& context, double share);
   ContactPoint linearised(const StepContext& context, const ContactPoint& found, double missing, double share) const;
   bool dropGhosts();
@@ -117,15 +130,17 @@ private:
   const std::vector<ContactState>& last_;
   std::vector<ContactId> carried_;  ///< points with an impulse in the last step, sorted
   std::vector<Candidate> candidates_;  ///< ordered by id
-  std::ptrdiff_t candidates_at_middle_ = 0;  ///< of those, the ones before a search ahead added more
-  std::vector<ContactId> touching_;  ///< points without a gap at the pose searched last
+  std::vector<Overlap> overlaps_;  ///< at the pose searched last
+  std::vector<std::uint64_t> touching_pairs_;  ///< ContactId::shapes without a gap there, sorted
   std::vector<ContactPoint> points_;
+  std::vector<ContactPoint> last_points_;  ///< before the last round
   std::vector<double> margins_;  ///< that q_m was searched with [m]
   std::vector<double> speeds_;  ///< bodies: largest speed of a point, of the free motion or the answer [m/s]
   std::vector<double> margins_ahead_;
   std::vector<Ahead> ahead_;
   int rounds_ = 0;
   bool ghosts_tried_ = false;
+  bool is_last_ = false;  ///< answers are no longer looked at
   double worst_ = 0.0;  ///< of the last look: deepest that is not allowed, in units of its size
 };
 
