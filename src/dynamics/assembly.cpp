@@ -97,7 +97,7 @@ void StepAssembly::makeGuess(const StepContext& context, Solution& guess, const 
     if (const double* memory = sink_.bilateralRecords()[k].memory)
       guess.lambda[k] = *memory;
   for (const std::unique_ptr<RowSource>& source : sources_)
-    source->guess(context, guess);
+    source->guess(context, answer != nullptr, guess);
   if (!answer)
     return;
   // Contacts know their impulses of the answer by id; other rows are the same ones, or start from the last step.

@@ -69,7 +69,6 @@ ContactRows::ContactRows(const std::vector<Body>& bodies, const CollisionWorld& 
 
 void ContactRows::begin(const StepContext&)
 {
-  answer_.clear();
   index_.clear();
   for (size_t i = 0; i < contacts_.size(); ++i)
     index_.emplace_back(contacts_[i].id, static_cast<int>(i));
@@ -194,13 +193,13 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   rows_.push_back(contact);
 }
 
-void ContactRows::guess(const StepContext& context, Solution& guess) const
+void ContactRows::guess(const StepContext& context, bool from_answer, Solution& guess) const
 {
   for (const ContactRow& row : rows_)
   {
     const ContactPoint& point = (*context.points)[row.point];
     const Eigen::Vector3d* impulse = nullptr;
-    if (answer_.empty())
+    if (!from_answer)
     {
       const ContactState* last_contact = last(point.id);
       impulse = last_contact == nullptr || row.closing ? nullptr : &last_contact->impulse;
@@ -219,24 +218,33 @@ void ContactRows::guess(const StepContext& context, Solution& guess) const
   }
 }
 
-Again ContactRows::lookAhead(const StepContext& context, const Solution& solution)
+/** Other rows or tangents may follow: they start from these impulses. */
+Again ContactRows::again(const StepContext& context, const Solution& solution, bool)
 {
-  if (set_ == nullptr)
-    return Again::NO;
-  normal_impulses_.assign(context.points->size(), std::numeric_limits<double>::quiet_NaN());
   answer_.clear();
   for (const ContactRow& row : rows_)
   {
     const ContactPoint& point = (*context.points)[row.point];
     const Eigen::Vector3d r = solution.r.segment<3>(row.row);
-    normal_impulses_[row.point] = r[0];
     answer_.emplace_back(point.id, r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2);
   }
+  return Again::NO;
+}
+
+Again ContactRows::lookAhead(const StepContext& context, const Solution& solution)
+{
+  if (set_ == nullptr)
+    return Again::NO;
+  normal_impulses_.assign(context.points->size(), std::numeric_limits<double>::quiet_NaN());
+  for (const ContactRow& row : rows_)
+    normal_impulses_[row.point] = solution.r[row.row];
   switch (set_->lookAgain(context, solution.v, normal_impulses_))
   {
     case ContactSet::Look::CONTENT:
       return Again::NO;
     case ContactSet::Look::CHANGED:
+      if (creep_ != nullptr)
+        creep_->restart();
       return Again::FROM_ANSWER;
     case ContactSet::Look::GIVEN_UP:
       break;
@@ -273,6 +281,7 @@ void ContactRows::accept(const StepContext& context, const StepAnswer& answer)
     state.tangent_1 = row.tangent_1;
     state.tangent_2 = row.tangent_2;
     state.gap = point.gap;
+    state.row_gap = point.is_linearised ? point.row_gap : point.gap;
     state.friction = row.friction;
     state.restitution = row.restitution;
     state.impulse = r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <cstdio>
+#include <cstdlib>
 
 #include "frictional_contact_sim/collision/convex_shape.h"
 #include "frictional_contact_sim/dynamics/contact_rows.h"
@@ -45,8 +47,9 @@ ContactSet::Ahead::Ahead(const Body& body)
 {
 }
 
-ContactSet::ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const std::vector<ContactState>& last)
-  : bodies_(bodies), world_(world), last_(last)
+ContactSet::ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const PairTable& pairs,
+                       const std::vector<ContactState>& last)
+  : bodies_(bodies), world_(world), pairs_(pairs), last_(last)
 {
   for (const Body& body : bodies_)
     ahead_.emplace_back(body);
@@ -127,7 +130,7 @@ void ContactSet::detectAtMiddle(const StepContext& context)
 /** At the end of the list; of two with one id sortCandidates keeps the first. */
 void ContactSet::addCandidate(const ContactPoint& point, Use use)
 {
-  candidates_.push_back({point, use, 0.0, 0});
+  candidates_.push_back({point, use});
 }
 
 void ContactSet::sortCandidates()
@@ -203,6 +206,8 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
     if (!changed && !context.impact)
       changed = dropGhosts();
   }
+  if (getenv("CSDBG")) { int c=0; for (auto& x: candidates_) c += (x.use==Use::ROW||x.use==Use::LINEARISED)&&x.impulse>0; fprintf(stderr,"round %d rows %zu carry %d cand %zu worst %.2e changed %d\n", rounds_, points_.size(), c, candidates_.size(), worst_, changed);
+    if (getenv("CSDBG")[0]=='2') for (auto& x: candidates_) fprintf(stderr,"   use %d imp %.3e gap %.3e rowgap %.3e lin %d n %.4f %.4f %.4f pos %.4f %.4f %.4f  f %x %x sh %d %d\n",(int)x.use,x.impulse,x.point.gap,x.point.row_gap,x.point.is_linearised,x.point.normal.x(),x.point.normal.y(),x.point.normal.z(),x.point.position.x(),x.point.position.y(),x.point.position.z(), featureA(x.point.id),featureB(x.point.id),x.point.shape_a,x.point.shape_b); }
   if (!changed)
     return Look::CONTENT;
   if (rounds_ == MOST_ROUNDS)
@@ -366,10 +371,16 @@ bool ContactSet::mend(const StepContext& context, double share)
       sortCandidates();
       candidate = known(overlap.point.id);
     }
-    candidate->point = linearised(context, overlap.point, overlap.missing, share);
-    candidate->use = Use::LINEARISED;
     candidate->round = rounds_ + 1;
     mended = true;
+    if (candidate->use == Use::DROPPED && pairs_(overlap.point.shape_a, overlap.point.shape_b).restitution > 0.0)
+    {
+      candidate->use = Use::ROW;
+      candidate->is_kept = true;
+      continue;
+    }
+    candidate->point = linearised(context, overlap.point, overlap.missing, share);
+    candidate->use = Use::LINEARISED;
   }
   return mended;
 }
@@ -416,7 +427,7 @@ bool ContactSet::dropGhosts()
   ghosts_tried_ = true;
   bool dropped = false;
   for (Candidate& candidate : candidates_)
-    if (candidate.use == Use::ROW && candidate.impulse > 0.0 &&
+    if (candidate.use == Use::ROW && !candidate.is_kept && candidate.impulse > 0.0 &&
         candidate.point.gap > OVERLAP * sizeOf(candidate.point) && !carriedBefore(candidate.point.id) &&
         !std::binary_search(touching_pairs_.begin(), touching_pairs_.end(), candidate.point.id.shapes))
     {

@@ -126,9 +126,9 @@ double StepAssembly::freeMiss(const StepContext& context, const Solution& soluti
   return change / allowed;
 }
 
-Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
+/** The bias of every body to the mean velocity of an answer, unless it is the last try. @return the largest miss */
+double StepAssembly::moveBias(const StepContext& context, const Solution& solution, bool is_last)
 {
-  const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
   double worst = 0.0;
   findActing(solution);
   for (Body& body : bodies_)
@@ -137,23 +137,34 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
     const bool free = nv > 0 && body.model.free_link && !acting_[body_of_[body.v_offset]];
     const double miss = nv == 0 ? 0.0 : free ? freeMiss(context, solution, body) : biasMiss(context, solution, body);
     if (!std::isfinite(miss))
-    {
-      unsatisfied_ = "bias at the midpoint";
-      return Again::NEVER;
-    }
+      return miss;
     worst = std::max(worst, miss);
-    if (miss == 0.0 || last)
+    if (miss == 0.0 || is_last)
       continue;
-    auto force = force_.segment(body.v_offset, nv);
-    force += context.dt * (body.next_bias - body.bias);
-    problem_.f.segment(body.v_offset, nv) = force;
+    force_.segment(body.v_offset, nv) += context.dt * (body.next_bias - body.bias);
     body.bias = body.next_bias;
   }
+  return worst;
+}
+
+void StepAssembly::followAnswer(const StepContext& context, const Solution& solution)
+{
+  if (!context.impact)
+    moveBias(context, solution, false);
+}
+
+Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
+{
+  const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
+  const double worst = moveBias(context, solution, last);
   if (worst == 0.0 || (last && worst < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
   ++bias_rounds_;
-  return last ? Again::NEVER : Again::FORCES;
+  if (last || !std::isfinite(worst))
+    return Again::NEVER;
+  problem_.f.head(velocities_) = force_;
+  return Again::FORCES;
 }
 
 void StepAssembly::settleFreeLinks(Solution& solution)

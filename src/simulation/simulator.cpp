@@ -52,7 +52,7 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , state(makeState(*world))
   , bodies(makeBodies(*world, state))
   , context(makeContext(scenario))
-  , contact_set(bodies, collision, state.rows.contacts)
+  , contact_set(bodies, collision, world->pairs, state.rows.contacts)
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
   , solver(createSolver(scenario.solver), scenario.stopping, scenario.failure)
 {

@@ -56,6 +56,7 @@ void visit(StateArchive& archive, ContactState& contact)
   archive.vector("contact.tangent_1", contact.tangent_1);
   archive.vector("contact.tangent_2", contact.tangent_2);
   archive.number("contact.gap", contact.gap);
+  archive.number("contact.row_gap", contact.row_gap);
   archive.number("contact.friction", contact.friction);
   archive.number("contact.restitution", contact.restitution);
   archive.vector("contact.impulse", contact.impulse);

@@ -74,6 +74,8 @@ void Simulator::Impl::solveStep()
       guess = result.solution;
     else
     {
+      if (again == Again::FROM_ANSWER)
+        assembly.followAnswer(context, result.solution);
       assembly.assembleRows(context);
       assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
       assembly.assembleProblem(context);

@@ -394,7 +394,7 @@ void RunAudit::checkContact(const ContactState& contact)
                           simulator_.scenario().contact_law == ContactLawForm::GAP;
   if (!is_gap_law)
     return;
-  const double shifted = speed + contact.gap / dt;
+  const double shifted = speed + contact.row_gap / dt;
   judge("gap", -shifted / tolerance, who + line("u_N + gap/dt = ", shifted, " m/s"));
   judge("gap", std::min(shifted, normal / mass) / tolerance,
         who + line("r_N = ", normal, " N s though u_N + gap/dt = ", shifted, " m/s"));

@@ -46,6 +46,8 @@ public:
    * @return index of a body whose mass matrix is not positive definite, else -1
    */
   int assembleForces(const StepContext& context);
+  /** @brief Before rows are assembled anew from an answer: the bias at its mean velocity. */
+  void followAnswer(const StepContext& context, const Solution& solution);
   /** @brief Rows H, w, G, b, laws of one step or impact. */
   void assembleRows(const StepContext& context);
   /** @brief v at the start, impulses of the last step; of `answer` (of this step, before rows changed) where given. */
@@ -85,6 +87,7 @@ private:
   void predict(const StepContext& context, Body& body);
   void findLastActing(const StepContext& context);
   void findActing(const Solution& solution);
+  double moveBias(const StepContext& context, const Solution& solution, bool is_last);
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
   double freeMiss(const StepContext& context, const Solution& solution, Body& body);

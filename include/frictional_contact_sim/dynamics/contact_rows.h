@@ -52,7 +52,8 @@ public:
   void clear() override { rows_.clear(); }
   void begin(const StepContext& context) override;
   void addRows(const StepContext& context, RowSink& sink) override;
-  void guess(const StepContext& context, Solution& guess) const override;
+  void guess(const StepContext& context, bool from_answer, Solution& guess) const override;
+  Again again(const StepContext& context, const Solution& solution, bool converged) override;
   Again lookAhead(const StepContext& context, const Solution& solution) override;
   void markActing(std::vector<char>& bodies) const override;
   void accept(const StepContext& context, const StepAnswer& answer) override;

@@ -21,7 +21,7 @@
  *  - a *ghost* is a row without which the step, solved again, still keeps every gap at both poses (a wheel that rolls
  *    over the seam of two coplanar boxes meets one): it carries nothing. Looked for once among points that carry an
  *    impulse, had a gap at q_m, carried none in the last step and do not touch at q_n. One that is then violated
- *    comes back, linearised, and stays.
+ *    comes back, linearised (with restitution: as it was), and stays.
  *
  * At most 10 rounds a step. Source: ../shared/DESIGN.md, "Nothing goes through".
  */
@@ -32,6 +32,7 @@
 #include "frictional_contact_sim/collision/collision_world.h"
 #include "frictional_contact_sim/dynamics/body.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
+#include "frictional_contact_sim/dynamics/pair_table.h"
 
 namespace frictional_contact_sim
 {
@@ -40,8 +41,9 @@ struct StepContext;
 class ContactSet
 {
 public:
-  /** @param last contacts of the last step. All three outlive this. */
-  ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const std::vector<ContactState>& last);
+  /** @param last contacts of the last step. All four outlive this. */
+  ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const PairTable& pairs,
+             const std::vector<ContactState>& last);
 
   /**
    * @brief The points of a step (impact) that its free motion could close; bodies stand at q_m with v_start, v_free and
@@ -85,6 +87,7 @@ private:
     ContactPoint point;
     Use use = Use::IDLE;
     double impulse = 0.0;  ///< of the answer
+    bool is_kept = false;  ///< was taken for a ghost and is none
     int round = 0;  ///< that linearised it last
   };
   /// A body where an answer takes it.
@@ -127,6 +130,7 @@ private:
 
   std::vector<Body>& bodies_;
   CollisionWorld& world_;
+  const PairTable& pairs_;
   const std::vector<ContactState>& last_;
   std::vector<ContactId> carried_;  ///< points with an impulse in the last step, sorted
   std::vector<Candidate> candidates_;  ///< ordered by id

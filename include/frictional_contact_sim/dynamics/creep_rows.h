@@ -23,6 +23,8 @@ public:
   void begin(const StepContext& context) override;
   Again again(const StepContext& context, const Solution& solution, bool converged) override;
 
+  /** @brief The contacts are others: iterations are counted anew. */
+  void restart() { iterations_ = 0; }
   /** @brief Forgets the contacts of the assembly before. */
   void clear() override;
   /**

@@ -109,8 +109,11 @@ public:
   virtual void addJointRows(const StepContext&, int /*body*/, int /*joint*/, RowSink&) {}
   /** @brief What acts without a row: impulses into `momentum` (nv), what is implicit into Body::implicit. */
   virtual void addMomentum(const StepContext&, int /*body*/, VectorOut /*momentum*/) {}
-  /** @brief Impulses of the last step, where RowRecord::memory does not hold them. */
-  virtual void guess(const StepContext&, Solution&) const {}
+  /**
+   * @brief Impulses where RowRecord::memory does not hold them.
+   * @param from_answer of the answer that `again` saw last, else of the last step
+   */
+  virtual void guess(const StepContext&, bool /*from_answer*/, Solution&) const {}
   /** @brief Asked in turn after a solve, until one says other than NO. @param converged the solve's verdict */
   virtual Again again(const StepContext&, const Solution&, bool /*converged*/) { return Again::NO; }
   /**
