@@ -18,11 +18,15 @@ namespace
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always known [m]
 constexpr double CLOSING_MARGIN = 2.0;  ///< times what the free motion closes of a gap: forces of other rows may add
 constexpr double OVERLAP = 1e-9;  ///< times the size: what may go through
+constexpr int STRICT_ROUNDS = 2;  ///< with every round after these more may: crossing edges converge slowly
+constexpr double LOOSER = 100.0;  ///< each of them
+constexpr double LOOSEST = 1e-5;
 constexpr double STILL = 1e-12;  ///< what moves less than this in a step closes no gap [m]
 constexpr double TOUCHING = 1e-12;  ///< a gap ahead that is zero [m]
 constexpr double NEAR = 1e-2;  ///< times the size: of points nearer than this the deepest gets a row first
+constexpr int EXTRA = 1 << 20;  ///< feature index of a second row for one pair of features, plus the round
 constexpr int MOST_ROUNDS = 10;
-constexpr double TRACE = 1e-6;  ///< times the size: left after the most rounds, it is not worth the step
+constexpr double TRACE = 1e-4;  ///< times the size: left after the most rounds, it is the next step's to mend
 constexpr double UNSEEN = -1.0;  ///< margin of a pair that is not looked at
 
 /** Sum over the coordinates of a link of direction . (motion of the point), velocities from `v` (of the body). */
@@ -61,6 +65,12 @@ ContactSet::ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const P
 bool ContactSet::carriedBefore(const ContactId& id) const
 {
   return std::binary_search(carried_.begin(), carried_.end(), id);
+}
+
+/** Times the size: how much may go through unmended in this round. */
+double ContactSet::tolerance() const
+{
+  return std::min(LOOSEST, OVERLAP * std::pow(LOOSER, std::max(0, rounds_ - STRICT_ROUNDS)));
 }
 
 double ContactSet::sizeOf(const ContactPoint& point) const
@@ -206,8 +216,7 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
     if (!changed && !context.impact)
       changed = dropGhosts();
   }
-  if (getenv("CSDBG")) { int c=0; for (auto& x: candidates_) c += (x.use==Use::ROW||x.use==Use::LINEARISED)&&x.impulse>0; fprintf(stderr,"round %d rows %zu carry %d cand %zu worst %.2e changed %d\n", rounds_, points_.size(), c, candidates_.size(), worst_, changed);
-    if (getenv("CSDBG")[0]=='2') for (auto& x: candidates_) fprintf(stderr,"   use %d imp %.3e gap %.3e rowgap %.3e lin %d n %.4f %.4f %.4f pos %.4f %.4f %.4f  f %x %x sh %d %d\n",(int)x.use,x.impulse,x.point.gap,x.point.row_gap,x.point.is_linearised,x.point.normal.x(),x.point.normal.y(),x.point.normal.z(),x.point.position.x(),x.point.position.y(),x.point.position.z(), featureA(x.point.id),featureB(x.point.id),x.point.shape_a,x.point.shape_b); }
+  if (getenv("CSDBG")) fprintf(stderr,"round %d rows %zu cand %zu worst %.2e changed %d\n", rounds_, points_.size(), candidates_.size(), worst_, changed);
   if (!changed)
     return Look::CONTENT;
   if (rounds_ == MOST_ROUNDS)
@@ -260,7 +269,7 @@ bool ContactSet::addClosing(const StepContext& context)
     const double speed =
         normalSpeed(candidate.point, [this](int body) -> const Eigen::VectorXd& { return ahead_[body].v; });
     const double missing = candidate.point.gap + time * speed;
-    if (missing >= -OVERLAP * sizeOf(candidate.point))
+    if (missing >= -tolerance() * sizeOf(candidate.point))
       continue;
     worst_ = std::max(worst_, -missing / sizeOf(candidate.point));
     candidate.use = Use::ROW;
@@ -328,11 +337,11 @@ void ContactSet::findOverlaps()
   {
     if (touching_pairs_.empty() || touching_pairs_.back() != point.id.shapes)
       touching_pairs_.push_back(point.id.shapes);
-    const double tolerance = OVERLAP * sizeOf(point);
-    if (point.gap >= -tolerance)
+    const double most = tolerance() * sizeOf(point);
+    if (point.gap >= -most)
       continue;
     const double missing = point.gap - allowedGap(point.shape_a, point.shape_b);
-    if (missing < -tolerance)
+    if (missing < -most)
       overlaps_.push_back({point, missing});
   }
   std::stable_sort(overlaps_.begin(), overlaps_.end(),
@@ -379,7 +388,18 @@ bool ContactSet::mend(const StepContext& context, double share)
       candidate->is_kept = true;
       continue;
     }
-    candidate->point = linearised(context, overlap.point, overlap.missing, share);
+    const ContactPoint row = linearised(context, overlap.point, overlap.missing, share);
+    if (candidate->use == Use::LINEARISED && (row.position - candidate->point.position).norm() > NEAR * size)
+    {
+      // The crossing of two nearly parallel edges runs along them: it needs rows at both places.
+      Candidate other = *candidate;
+      other.point.id = makeContactId(row.shape_a, row.shape_b, makeFeature(FeatureKind::CURVE, EXTRA + rounds_),
+                                     featureB(row.id));
+      candidates_.push_back(other);
+      sortCandidates();
+      candidate = known(row.id);
+    }
+    candidate->point = row;
     candidate->use = Use::LINEARISED;
   }
   return mended;
@@ -422,7 +442,7 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
 /** Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. */
 bool ContactSet::dropGhosts()
 {
-  if (ghosts_tried_)
+  if (ghosts_tried_ || rounds_ > STRICT_ROUNDS)
     return false;
   ghosts_tried_ = true;
   bool dropped = false;

@@ -25,6 +25,7 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
+  bool askLess();
   void setUnsatisfied();
   void fail(SolverStatus status, const std::string& message);
   bool acceptable() const;  ///< whether ACCEPT may take the answer

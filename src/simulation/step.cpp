@@ -58,6 +58,7 @@ void Simulator::Impl::solveStep()
   Again again = Again::FROM_GUESS;
   int failed_rounds = 0;
   context.points = nullptr;
+  context.normal_law.recovery_speed = NormalLaw().recovery_speed;
   do
   {
     if (again == Again::FROM_GUESS)
@@ -85,8 +86,7 @@ void Simulator::Impl::solveStep()
     failed_rounds += result.status != SolverStatus::CONVERGED;
     if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
-    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED &&
-        contact_set.goBack())
+    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED && askLess())
       again = Again::FROM_GUESS;
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
   if (isMotion(result.solution))
@@ -94,6 +94,22 @@ void Simulator::Impl::solveStep()
   if (again == Again::NEVER)
     setUnsatisfied();
   solver.takeLeastNorm(assembly.problem(), result);
+}
+
+/**
+ * After a solve without an answer: whether the step can do with fewer rows, or without pushing overlaps out (what is
+ * wedged cannot separate, whatever the force).
+ */
+bool Simulator::Impl::askLess()
+{
+  if (contact_set.goBack())
+    return true;
+  const bool overlaps = std::any_of(context.points->begin(), context.points->end(),
+                                    [](const ContactPoint& point) { return point.gap < 0.0; });
+  if (!overlaps || context.normal_law.recovery_speed == 0.0)
+    return false;
+  context.normal_law.recovery_speed = 0.0;
+  return true;
 }
 
 /** Solves converged, but not the rows' own law. */
