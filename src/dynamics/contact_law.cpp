@@ -19,7 +19,7 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
   if (result.closing && restitution > 0.0)
     result.shift = restitution * old_velocity;
   else
-    result.shift = gap >= 0.0 ? gap / dt : -std::min(std::max(-gap - law.trace, 0.0) / dt, law.recovery_speed);
+    result.shift = gap >= 0.0 ? gap / dt : -std::min(-gap / dt, law.recovery_speed);
   return result;
 }
 

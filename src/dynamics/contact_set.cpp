@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdio>
-#include <cstdlib>
 
 #include "frictional_contact_sim/collision/convex_shape.h"
 #include "frictional_contact_sim/dynamics/contact_rows.h"
@@ -216,7 +214,6 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
     if (!changed && !context.impact)
       changed = dropGhosts();
   }
-  if (getenv("CSDBG")) fprintf(stderr,"round %d rows %zu cand %zu worst %.2e changed %d\n", rounds_, points_.size(), candidates_.size(), worst_, changed);
   if (!changed)
     return Look::CONTENT;
   if (rounds_ == MOST_ROUNDS)
@@ -227,13 +224,15 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
   return Look::CHANGED;
 }
 
-bool ContactSet::goBack()
+bool ContactSet::canGoBack() const
 {
-  if (rounds_ == 0 || is_last_ || worst_ > TRACE)
-    return false;
+  return rounds_ > 0 && !is_last_ && worst_ <= TRACE;
+}
+
+void ContactSet::goBack()
+{
   is_last_ = true;
   points_.swap(last_points_);
-  return true;
 }
 
 /** The answer's velocities and speeds. @return whether anything moves */

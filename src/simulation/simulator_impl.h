@@ -25,7 +25,8 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
-  bool askLess();
+  bool canAskLess() const;
+  void askLess();
   void setUnsatisfied();
   void fail(SolverStatus status, const std::string& message);
   bool acceptable() const;  ///< whether ACCEPT may take the answer

@@ -81,13 +81,16 @@ void Simulator::Impl::solveStep()
       assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
       assembly.assembleProblem(context);
     }
-    solver.solve(assembly.problem(), guess, result);
+    solver.solve(assembly.problem(), guess, !canAskLess(), result);
     again = Again::NO;
     failed_rounds += result.status != SolverStatus::CONVERGED;
     if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
-    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED && askLess())
+    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED && canAskLess())
+    {
+      askLess();
       again = Again::FROM_GUESS;
+    }
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
   if (isMotion(result.solution))
     assembly.settleFreeLinks(result.solution);
@@ -97,19 +100,23 @@ void Simulator::Impl::solveStep()
 }
 
 /**
- * After a solve without an answer: whether the step can do with fewer rows, or without pushing overlaps out (what is
- * wedged cannot separate, whatever the force).
+ * Whether a solve without an answer leaves something to be asked less: fewer rows, or overlaps that are not pushed out
+ * (what is wedged, u_N < mu |u_T| in all its motions, cannot separate whatever the force).
  */
-bool Simulator::Impl::askLess()
+bool Simulator::Impl::canAskLess() const
 {
-  if (contact_set.goBack())
-    return true;
-  const bool overlaps = std::any_of(context.points->begin(), context.points->end(),
-                                    [](const ContactPoint& point) { return point.gap < 0.0; });
-  if (!overlaps || context.normal_law.recovery_speed == 0.0)
-    return false;
-  context.normal_law.recovery_speed = 0.0;
-  return true;
+  const bool pushes = context.normal_law.recovery_speed > 0.0 &&
+                      std::any_of(context.points->begin(), context.points->end(),
+                                  [](const ContactPoint& point) { return point.gap < 0.0; });
+  return pushes || contact_set.canGoBack();
+}
+
+void Simulator::Impl::askLess()
+{
+  if (contact_set.canGoBack())
+    contact_set.goBack();
+  else
+    context.normal_law.recovery_speed = 0.0;
 }
 
 /** Solves converged, but not the rows' own law. */

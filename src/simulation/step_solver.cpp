@@ -208,7 +208,8 @@ void StepSolver::tryOthers(const IncrementalProblem& problem, SolverResult& resu
   result.seconds = seconds;
 }
 
-void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess, SolverResult& result)
+void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort,
+                       SolverResult& result)
 {
   // A state that has run away overflows here; it must not reach the solver as a NaN.
   if (!problem.f.allFinite() || !problem.w.allFinite() || !guess.r.allFinite())
@@ -217,7 +218,7 @@ void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess,
     return;
   }
   run(helper_ != nullptr ? *helper_ : *method_, problem, &guess, result);
-  if (mayTryOthers(result))
+  if (is_last_resort && mayTryOthers(result))
     tryOthers(problem, result);
   // A step may take several solves: what it says is of all of them.
   iterations_ += result.iterations;

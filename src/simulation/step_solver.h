@@ -32,7 +32,7 @@ public:
    * Nothing is thrown. CONVERGED with residual and energy within their bounds, or the best iterate of all methods tried
    * and why it is none.
    */
-  void solve(const IncrementalProblem& problem, const Solution& guess, SolverResult& result);
+  void solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort, SolverResult& result);
   /** Of a CONVERGED answer to the problem solved last: the impulses that its loads ask for (solver/least_norm.h). */
   void takeLeastNorm(const IncrementalProblem& problem, SolverResult& result);
 

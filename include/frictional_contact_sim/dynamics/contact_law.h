@@ -7,7 +7,7 @@
  *
  *   closing with restitution e > 0 (u_old < -threshold and gap + dt u_old <= 0)   u_N >= -e u_old
  *   gap >= 0                                                                      u_N >= -gap/dt
- *   gap < 0                                                       u_N >= min(max(-gap - trace, 0)/dt, v_recover)
+ *   gap < 0                                                                       u_N >= min(-gap/dt, v_recover)
  *
  * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (DESIGN.md, "The time step"). The thesis's
  * plain velocity law (Cadoux 2009, 1.1.5 and 2.2: u_N + e u_old >= 0 where gap <= 0, nothing else) stays selectable.
@@ -25,9 +25,6 @@ struct NormalLaw
   ContactLawForm form = ContactLawForm::GAP;
   double closing_speed = 1e-6;  ///< threshold: slower approaches do not bounce [m/s] > 0
   double recovery_speed = 0.01;  ///< v_recover: fastest separation of an initial penetration [m/s] >= 0
-  /// Overlaps up to this are left as they are [m]: what is wedged (u_N <= mu |u_T| for all its motions) cannot separate
-  /// at any speed, and round-off would make a demand that has no solution.
-  double trace = 1e-9;
 };
 
 struct NormalShift

@@ -67,9 +67,10 @@ public:
 
   /**
    * @brief The points before the last change: where the solve with the new ones has failed and only a trace (1e-4 of the
-   * size) went through without them. Answers are not looked at again in this step. @return false: no such points
+   * size) went through without them. Answers are not looked at again in this step.
    */
-  bool goBack();
+  void goBack();
+  bool canGoBack() const;
 
   const std::vector<ContactPoint>& points() const { return points_; }
   /** @brief How often the points of this step were changed. */
