@@ -1,0 +1,182 @@
+// Points that are one, and libqhull: the triangles of a convex hull.
+#include <libqhull_r/libqhull_r.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "polyhedron_topology.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+using Cell = std::array<std::int64_t, 3>;
+
+std::uint64_t hashOf(const Cell& cell)
+{
+  std::uint64_t hash = 0;
+  for (const std::int64_t index : cell)
+  {
+    hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9e3779b97f4a7c15ULL;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+/// Open hash table from a cell to the last point kept there; `before` chains the points of a cell.
+class CellTable
+{
+public:
+  explicit CellTable(size_t points)
+  {
+    size_t size = 64;
+    while (size < 2 * points)
+      size *= 2;
+    last_.assign(size, -1);
+    cells_.resize(size);
+  }
+  int last(const Cell& cell) const { return last_[slot(cell)]; }
+  int before(int point) const { return before_[point]; }
+  /// Points are numbered 0, 1, ... in the order they are added.
+  void add(const Cell& cell)
+  {
+    const size_t at = slot(cell);
+    before_.push_back(last_[at]);
+    last_[at] = static_cast<int>(before_.size()) - 1;
+    cells_[at] = cell;
+  }
+
+private:
+  size_t slot(const Cell& cell) const
+  {
+    size_t at = hashOf(cell) & (last_.size() - 1);
+    while (last_[at] >= 0 && cells_[at] != cell)
+      at = (at + 1) & (last_.size() - 1);
+    return at;
+  }
+
+  std::vector<int> last_;
+  std::vector<Cell> cells_;
+  std::vector<int> before_;
+};
+
+struct QhullDeleter
+{
+  void operator()(qhT* qh) const
+  {
+    int current = 0;
+    int total = 0;
+    qh_freeqhull(qh, !qh_ALL);
+    qh_memfreeshort(qh, &current, &total);
+    delete qh;
+  }
+};
+
+/// All facets are simplicial: three vertices, in an order that `toporient` gives a sense, and three neighbours.
+HullSurface surfaceOf(qhT* qh)
+{
+  std::vector<int> number(qh->facet_id, -1);
+  int count = 0;
+  for (facetT* facet = qh->facet_list; facet && facet->next; facet = facet->next)
+    number[facet->id] = count++;
+  HullSurface surface;
+  surface.joggle = qh->JOGGLEmax;
+  surface.triangles.reserve(count);
+  for (facetT* facet = qh->facet_list; facet && facet->next; facet = facet->next)
+  {
+    HullTriangle triangle;
+    for (int k = 0; k < 3; ++k)
+    {
+      triangle.corner[k] = qh_pointid(qh, SETelemt_(facet->vertices, k, vertexT)->point);
+      triangle.neighbour[k] = number[SETelemt_(facet->neighbors, k, facetT)->id];
+    }
+    if (facet->toporient)
+    {
+      std::swap(triangle.corner[1], triangle.corner[2]);
+      std::swap(triangle.neighbour[1], triangle.neighbour[2]);
+    }
+    surface.triangles.push_back(triangle);
+  }
+  return surface;
+}
+
+double signedVolume(const std::vector<Eigen::Vector3d>& points, const HullSurface& surface)
+{
+  double volume = 0.0;
+  for (const HullTriangle& triangle : surface.triangles)
+    volume += points[triangle.corner[0]].dot(points[triangle.corner[1]].cross(points[triangle.corner[2]])) / 6.0;
+  return volume;
+}
+}  // namespace
+
+std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, double tolerance)
+{
+  // Cells of twice the tolerance: what is near a point is in its cell or in the nearer neighbour along each axis.
+  const double width = 2.0 * tolerance;
+  CellTable table(points.size());
+  std::vector<Eigen::Vector3d> kept;
+  for (const Eigen::Vector3d& point : points)
+  {
+    Cell cell;
+    Cell step;
+    for (int i = 0; i < 3; ++i)
+    {
+      const double place = point[i] / width;
+      cell[i] = static_cast<std::int64_t>(std::floor(place));
+      step[i] = place - std::floor(place) < 0.5 ? -1 : 1;
+    }
+    bool is_new = true;
+    for (int k = 0; k < 8 && is_new; ++k)
+    {
+      const Cell near = {cell[0] + (k & 1) * step[0], cell[1] + (k >> 1 & 1) * step[1], cell[2] + (k >> 2) * step[2]};
+      for (int other = table.last(near); other >= 0 && is_new; other = table.before(other))
+        is_new = (kept[other] - point).norm() > tolerance;
+    }
+    if (is_new)
+    {
+      table.add(cell);
+      kept.push_back(point);
+    }
+  }
+  return kept;
+}
+
+HullSurface hullSurface(const std::vector<Eigen::Vector3d>& points)
+{
+  std::vector<Eigen::Vector3d> input = points;  // qhull may write into it
+  std::unique_ptr<qhT, QhullDeleter> owner(new qhT);
+  const std::unique_ptr<FILE, int (*)(FILE*)> sink(std::fopen("/dev/null", "w"), &std::fclose);
+  qhT* const qh = owner.get();
+  // QJ: points are moved by some 1e-10 of the size until the hull has triangles alone, no merged facet and no flat one.
+  char options[] = "qhull QJ Pp";
+  qh_zero(qh, sink.get());
+  qh_init_A(qh, nullptr, sink.get(), sink.get(), 0, nullptr);
+  const int failed = setjmp(qh->errexit);  // as qh_new_qhull does it, without its check of the output
+  if (failed == 0)
+  {
+    qh->NOerrexit = False;
+    qh_initflags(qh, options);
+    qh_init_B(qh, input.data()->data(), static_cast<int>(input.size()), 3, False);
+    qh_qhull(qh);
+  }
+  qh->NOerrexit = True;
+  if (failed != 0)
+    throw std::invalid_argument("qhull finds no hull of its " + std::to_string(points.size()) + " points");
+  HullSurface surface = surfaceOf(qh);
+  if (signedVolume(points, surface) < 0.0)
+  {
+    for (HullTriangle& triangle : surface.triangles)
+    {
+      std::swap(triangle.corner[1], triangle.corner[2]);
+      std::swap(triangle.neighbour[1], triangle.neighbour[2]);
+    }
+  }
+  return surface;
+}
+
+}  // namespace frictional_contact_sim
