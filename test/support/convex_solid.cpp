@@ -185,7 +185,7 @@ ConvexSolid::ConvexSolid(const Geometry& geometry) : geometry_(geometry)
     throw std::invalid_argument("convex_solid: a geometry that is not a bounded convex one");
 }
 
-ConvexSolid::ConvexSolid(const std::vector<Eigen::Vector3d>& vertices) : geometry_(Mesh{})
+ConvexSolid::ConvexSolid(const std::vector<Eigen::Vector3d>& vertices) : geometry_(Mesh{"", Eigen::Vector3d::Ones()})
 {
   addHull(vertices);
 }

@@ -105,7 +105,7 @@ std::vector<Eigen::Vector3d> readMesh(const std::string& path, const Eigen::Vect
 /**
  * @brief The hulls of the parts of a mesh file, without those inside another one.
  * @param addition what the hulls add to parts that are not convex, one line; empty when that is below 1 % of the
- * volume, or below 1 % of the size where a surface is not closed. Its distance is that of the hull's surface from the
+ * volume, or below 5 % of the size where a surface is not closed. Its distance is that of the hull's surface from the
  * mesh's, the largest over samples of the hull's largest triangles, so a lower bound.
  * @throws ModelError naming the file and the reason
  */
