@@ -39,7 +39,8 @@ public:
     loops_.resize(members_.size());
     for (size_t f = 0; f < members_.size(); ++f)
       loops_[f] = boundary(static_cast<int>(f));
-    // what is no convex polygon stays triangles: a strip left over between two faces, a face with a hole
+    // what is no convex polygon stays triangles: a strip left over between two faces, a face with a hole, the rim of a
+    // plate so thin that its two sides are in one plane
     const size_t count = members_.size();
     for (size_t f = 0; f < count; ++f)
       if (!isConvexPolygon(static_cast<int>(f)))
@@ -58,6 +59,20 @@ public:
     return faces;
   }
 
+  /// Of every point: whether the hull changes by more than the tolerance without it.
+  std::vector<char> neededPoints() const
+  {
+    const std::vector<int> faces = facesAtPoint();
+    std::vector<char> is_needed(points_.size(), 0);
+    for (size_t p = 0; p < faces.size(); ++p)
+      is_needed[p] = faces[p] >= 3 ? 1 : 0;
+    for (const std::vector<int>& loop : loops_)
+      for (const int vertex : loop)
+        if (faces[vertex] < 3 && !isOnEdge(vertex, loop, faces))
+          is_needed[vertex] = 1;
+    return is_needed;
+  }
+
   /// Afterwards every vertex is the corner of a face.
   void splitFacesWithVerticesInside()
   {
@@ -69,6 +84,26 @@ public:
   }
 
 private:
+  /// Two faces that are nearly one plane meet in any line: only on a straight one a corner of two faces is idle.
+  bool isOnEdge(int vertex, const std::vector<int>& loop, const std::vector<int>& faces) const
+  {
+    const size_t size = loop.size();
+    const size_t at = static_cast<size_t>(std::find(loop.begin(), loop.end(), vertex) - loop.begin());
+    const auto corner = [&](size_t step)
+    {
+      size_t k = (at + step) % size;
+      while (k != at && faces[loop[k]] < 3)
+        k = (k + step) % size;
+      return loop[k];
+    };
+    const int next = corner(1);
+    const int last = corner(size - 1);
+    if (next == vertex || next == last)
+      return false;
+    const Eigen::Vector3d along = points_[next] - points_[last];
+    return along.cross(points_[vertex] - points_[last]).norm() <= tolerance_ * along.norm();
+  }
+
   /// From the largest triangles on: their planes are the most accurate. All points are below a triangle's plane.
   void grow()
   {
@@ -142,6 +177,21 @@ private:
       if (outside < -tolerance_ * along.norm())
         return false;
     }
+    return std::all_of(members_[face].begin(), members_[face].end(),
+                       [&](int t) { return isInside(triangles_[t], loop, normal); });
+  }
+
+  bool isInside(const HullTriangle& triangle, const std::vector<int>& loop, const Eigen::Vector3d& normal) const
+  {
+    for (size_t k = 0; k < loop.size(); ++k)
+    {
+      const Eigen::Vector3d& from = points_[loop[k]];
+      const Eigen::Vector3d along = points_[loop[(k + 1) % loop.size()]] - from;
+      const Eigen::Vector3d outwards = along.cross(normal);
+      for (const int v : triangle.corner)
+        if (outwards.dot(points_[v] - from) > tolerance_ * along.norm())
+          return false;
+    }
     return true;
   }
 
@@ -170,11 +220,11 @@ private:
   std::vector<std::vector<int>> loops_;
 };
 
-std::vector<Eigen::Vector3d> cornersOf(const std::vector<Eigen::Vector3d>& points, const std::vector<int>& faces)
+std::vector<Eigen::Vector3d> chosen(const std::vector<Eigen::Vector3d>& points, const std::vector<char>& is_chosen)
 {
   std::vector<Eigen::Vector3d> corners;
   for (size_t p = 0; p < points.size(); ++p)
-    if (faces[p] >= 3)
+    if (is_chosen[p])
       corners.push_back(points[p]);
   return corners;
 }
@@ -233,11 +283,11 @@ std::vector<Eigen::Vector3d> moved(std::vector<Eigen::Vector3d> points, const Ei
 
 /// The points that are corners of faces; all of them where leaving the others out is not worth another hull.
 std::vector<Eigen::Vector3d> withoutIdlePoints(const std::vector<Eigen::Vector3d>& points, const HullSurface& surface,
-                                               const std::vector<int>& faces, double tolerance)
+                                               const std::vector<char>& is_needed, double tolerance)
 {
   const std::vector<int> numbers = numbersOf(points.size(), surface);
   const int vertices = *std::max_element(numbers.begin(), numbers.end()) + 1;
-  const std::vector<Eigen::Vector3d> corners = cornersOf(points, faces);
+  const std::vector<Eigen::Vector3d> corners = chosen(points, is_needed);
   const bool is_worth_it = corners.size() < (vertices < FINE ? 1.0 : WORTH_A_HULL) * vertices;
   return is_worth_it && corners.size() >= 4 && !commonPlane(corners, tolerance).is_plane ? corners : points;
 }
@@ -247,7 +297,7 @@ Polyhedron assemble(std::vector<Eigen::Vector3d> points, const Eigen::Vector3d& 
   std::vector<Eigen::Vector3d> centred = moved(points, -center);
   HullSurface surface = hullSurface(centred);
   const std::vector<Eigen::Vector3d> corners =
-      withoutIdlePoints(points, surface, FaceMerger(centred, surface.triangles, tolerance).facesAtPoint(), tolerance);
+      withoutIdlePoints(points, surface, FaceMerger(centred, surface.triangles, tolerance).neededPoints(), tolerance);
   if (corners.size() < points.size())
   {
     points = corners;

@@ -47,7 +47,7 @@ Corners withoutFlatCorners(const Corners& corners, double tolerance)
   for (size_t k = 0; k < size; ++k)
   {
     const Eigen::Vector2d& last = kept.empty() ? corners[size - 1] : kept.back();
-    const Eigen::Vector2d& next = corners[(k + 1) % size];
+    const Eigen::Vector2d& next = k + 1 < size ? corners[k + 1] : kept.empty() ? corners[0] : kept.front();
     if (std::abs(turn(last, corners[k], next)) > tolerance * (next - last).norm())
       kept.push_back(corners[k]);
   }
@@ -110,6 +110,7 @@ Polyhedron flatPolygon(const std::vector<Eigen::Vector3d>& points, const CommonP
     polygon.faces[face].normal = (face == 0 ? 1.0 : -1.0) * plane.normal;
     polygon.faces[face].offset = (face == 0 ? 1.0 : -1.0) * plane.normal.dot(plane.origin);
   }
+  polygon.slack = 1e-14 * (polygon.size + polygon.center.norm());  // round-off
   completeSearch(sides, polygon);
   polygon.is_flat = true;
   return polygon;

@@ -159,18 +159,16 @@ std::string number(const char* format, double value)
 
 std::string describe(const Additions& additions, size_t parts)
 {
-  std::string line = "it is not convex, and its convex hull is used";
-  if (parts > 1)
-    line = std::to_string(additions.count) + " of its " + std::to_string(parts) +
-           " parts are not convex, and their convex hulls are used";
-  line += additions.has_open
-              ? ": its surface is not closed (no volume); the hull"
-              : ": the hull adds " + number("%.3g m^3", additions.volume) + " (" +
-                    number("%.0f %%", 100.0 * additions.volume / additions.hull_volume) + " of its own volume) and";
-  line += " is at least " + number("%.3g m", additions.distance) + " away from the mesh somewhere";
-  if (parts > 1)
-    line += " (part '" + additions.worst + "')";
-  return line + "; objects that are convex each, in one OBJ file, are kept apart";
+  const std::string what = parts == 1 ? "it is not convex; its convex hull"
+                                      : std::to_string(additions.count) + " of its " + std::to_string(parts) +
+                                            " parts are not convex; their convex hulls, used instead,";
+  const double share = 100.0 * additions.volume / additions.hull_volume;
+  const std::string volume = additions.has_open ? " (no volume, the surface is open)"
+                                                : " adds " + number("%.3g m^3, ", additions.volume) +
+                                                      number("%.0f %% of its own volume, and", share);
+  return what + (parts == 1 ? ", used instead," : "") + volume + " is at least " +
+         number("%.3g m", additions.distance) + " away from the mesh somewhere" +
+         (parts > 1 ? " (part '" + additions.worst + "')" : "");
 }
 
 bool isWithin(const Polyhedron& inner, const Polyhedron& outer)

@@ -134,6 +134,68 @@ TEST_P(RandomMeshTest, GapToAPlaneIsThatOfTheLowestVertexAndAllPointsWithinTheMa
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomMeshTest, testing::Range<std::uint32_t>(0, SEEDS));
 
+/// Point sets that are hard for a hull: nearly flat, nearly on a line, on a lattice, many in one plane or on one edge.
+std::vector<Eigen::Vector3d> hardPoints(int kind, std::mt19937& random)
+{
+  const int count = 8 + static_cast<int>(std::exp(uniform(random, 0.0, 6.0)));
+  const double thickness = std::exp(uniform(random, std::log(1e-9), 0.0));
+  const double width = std::exp(uniform(random, std::log(1e-5), 0.0));
+  const auto lattice = [&] { return std::floor(uniform(random, 0.0, 4.999)); };
+  const Eigen::Matrix3d turn = uniform(random, 0.0, 1.0) < 0.3 ? Eigen::Matrix3d::Identity() : randomRotation(random);
+  const bool is_single_precision = uniform(random, 0.0, 1.0) < 0.5;
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < count; ++i)
+  {
+    Eigen::Vector3d point = randomVector(random);
+    const double angle = 2.0 * M_PI * (i / 2) / (count / 2 + 1);
+    switch (kind)
+    {
+      case 0:  // plate
+        point.z() *= thickness;
+        break;
+      case 1:
+        point << lattice(), lattice(), lattice();
+        break;
+      case 2:  // needle
+        point = point.cwiseProduct(Eigen::Vector3d(1.0, width, thickness * width));
+        break;
+      case 3:  // coin
+        point << std::cos(angle), std::sin(angle), (i % 2 == 0 ? -thickness : thickness);
+        break;
+      case 4:  // two lattices next to each other
+        point << lattice(), lattice(), thickness * (i % 2);
+        break;
+      case 5:  // dome
+        point.z() = -thickness * point.head<2>().squaredNorm();
+        break;
+      default:  // cube with every second point on its surface
+        point /= i % 2 == 0 ? 1.0 : point.cwiseAbs().maxCoeff();
+    }
+    point = turn * point;
+    points.push_back(is_single_precision ? Eigen::Vector3d(point.cast<float>().cast<double>()) : point);
+  }
+  return points;
+}
+
+TEST(HardHullTest, LoadsHoldsAllPointsAndFindsItsLowestPoint)
+{
+  std::mt19937 random(12);
+  for (int k = 0; k < 1400; ++k)
+  {
+    const std::vector<Eigen::Vector3d> points = hardPoints(k % 7, random);
+    const ConvexShape shape = makeShape(convexHull(points));
+    const Polyhedron& hull = shape.core;
+    ASSERT_EQ(static_cast<int>(hull.vertices.size() + hull.faces.size()) - static_cast<int>(hull.edges.size()), 2) << k;
+    for (const Polyhedron::Face& face : hull.faces)
+      ASSERT_NEAR(face.normal.norm(), 1.0, 1e-12) << k;
+    for (const Eigen::Vector3d& n : directionsFor(hull, random))
+    {
+      ASSERT_NEAR(lowestOf(hull.vertices, n), lowestOf(points, n), LEFT_OUT * hull.size) << k;
+      ASSERT_EQ(lowestAlong(shape, n), lowestOf(hull.vertices, n)) << k;
+    }
+  }
+}
+
 /// Near each other: the gap is s(n) of all vertices along the normal, and no direction near it separates better.
 TEST(RandomMeshPairTest, GapIsTheSeparationOfAllVertices)
 {

@@ -193,7 +193,7 @@ TEST_F(WrittenMeshTest, MeshThatIsNotConvexIsNamedWithWhatItsHullAdds)
                          (folder_ / "ring.stl").string());
   const Simulator simulator(scenarioOf("<mesh filename=\"ring.stl\"/>", 0.2));
   ASSERT_EQ(warningsWith(simulator, "link 'part': collision mesh " + (folder_ / "ring.stl").string()), 1u);
-  EXPECT_EQ(warningsWith(simulator, "the hull adds"), 1u);
+  EXPECT_EQ(warningsWith(simulator, "used instead, adds"), 1u);
 }
 
 TEST_F(WrittenMeshTest, MeshThatIsNoShapeIsNamedWithUrdfLinkAndFile)
