@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "frictional_contact_sim/collision/polyhedron.h"
@@ -296,22 +297,22 @@ Polyhedron assemble(std::vector<Eigen::Vector3d> points, const Eigen::Vector3d& 
 {
   std::vector<Eigen::Vector3d> centred = moved(points, -center);
   HullSurface surface = hullSurface(centred);
-  const std::vector<Eigen::Vector3d> corners =
-      withoutIdlePoints(points, surface, FaceMerger(centred, surface.triangles, tolerance).neededPoints(), tolerance);
+  auto merger = std::make_unique<FaceMerger>(centred, surface.triangles, tolerance);
+  const std::vector<Eigen::Vector3d> corners = withoutIdlePoints(points, surface, merger->neededPoints(), tolerance);
   if (corners.size() < points.size())
   {
     points = corners;
     centred = moved(points, -center);
     surface = hullSurface(centred);
+    merger = std::make_unique<FaceMerger>(centred, surface.triangles, tolerance);
   }
-  FaceMerger merger(centred, surface.triangles, tolerance);
-  merger.splitFacesWithVerticesInside();
+  merger->splitFacesWithVerticesInside();
   const std::vector<int> number = numbersOf(points.size(), surface);
   Polyhedron hull;
   for (size_t p = 0; p < points.size(); ++p)
     if (number[p] >= 0)
       hull.vertices.push_back(points[p]);
-  std::vector<std::vector<int>> loops = merger.loops();
+  std::vector<std::vector<int>> loops = merger->loops();
   for (std::vector<int>& loop : loops)
     for (int& vertex : loop)
       vertex = number[vertex];

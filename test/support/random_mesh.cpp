@@ -283,9 +283,10 @@ void writeObj(const std::vector<RandomMesh>& meshes, const std::string& path)
   std::ofstream file(path);
   file.precision(9);
   int first = 1;
-  for (const RandomMesh& mesh : meshes)
+  for (size_t k = 0; k < meshes.size(); ++k)
   {
-    file << "o " << mesh.name << '\n';
+    const RandomMesh& mesh = meshes[k];
+    file << "o " << mesh.name << '.' << k << '\n';  // assimp makes one of two objects with the same name
     for (const Eigen::Vector3d& vertex : mesh.vertices)
       file << "v " << vertex.x() << ' ' << vertex.y() << ' ' << vertex.z() << '\n';
     for (const std::array<int, 3>& triangle : mesh.triangles)
