@@ -12,16 +12,9 @@ namespace frictional_contact_sim
 {
 namespace
 {
-// Times the size: what single-precision files cannot tell from one point or one plane. A mesh far from its origin has
-// the rounding of its coordinates: so many times 2^-23 of the largest.
-constexpr double WELD_TOLERANCE = 2.5e-7;
-constexpr double COPLANAR_TOLERANCE = 5e-7;
-constexpr double WELD_ROUNDINGS = 2.0;
-constexpr double COPLANAR_ROUNDINGS = 4.0;
 // Of a fine mesh a second hull, without the vertices that change nothing, is made when that leaves so few.
 constexpr int FINE = 1000;
 constexpr double WORTH_A_HULL = 0.9;
-constexpr double SINGLE_PRECISION = 1.0 / (1 << 23);
 
 Eigen::Vector3d areaVector(const std::vector<Eigen::Vector3d>& points, const HullTriangle& triangle)
 {
@@ -333,28 +326,19 @@ Polyhedron convexHull(const std::vector<Eigen::Vector3d>& points)
 {
   if (points.empty())
     throw std::invalid_argument("it has no vertices");
-  Eigen::Vector3d low = points.front();
-  Eigen::Vector3d high = low;
-  for (const Eigen::Vector3d& point : points)
-  {
-    if (!point.allFinite())
-      throw std::invalid_argument("a vertex is not finite");
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  const Eigen::Vector3d center = 0.5 * (low + high);
-  const double size = 0.5 * (high - low).norm();
-  if (!(size > 0.0))
+  const Precision precision = precisionOf(points);
+  if (!std::isfinite(precision.size))
+    throw std::invalid_argument("a vertex is not finite");
+  if (!(precision.size > 0.0))
     throw std::invalid_argument("all its vertices are one point; a sphere of radius 0 is a point");
-  const double rounding = SINGLE_PRECISION * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
-  const double tolerance = std::max(COPLANAR_TOLERANCE * size, COPLANAR_ROUNDINGS * rounding);
-  const std::vector<Eigen::Vector3d> welded = weld(points, std::max(WELD_TOLERANCE * size, WELD_ROUNDINGS * rounding));
+  const double tolerance = precision.coplanar;
+  const std::vector<Eigen::Vector3d> welded = weld(points, precision.weld);
   const CommonPlane plane = commonPlane(welded, tolerance);
   if (plane.is_line)
     throw std::invalid_argument("all its vertices lie on one line, which is no shape; a thin capsule or box is one");
   if (plane.is_plane)
     return flatPolygon(welded, plane, tolerance);
-  return assemble(welded, center, tolerance);
+  return assemble(welded, precision.center, tolerance);
 }
 
 }  // namespace frictional_contact_sim

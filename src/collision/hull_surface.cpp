@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -16,6 +17,12 @@ namespace frictional_contact_sim
 {
 namespace
 {
+// Times the size. A mesh far from its origin has the rounding of its coordinates: so many times 2^-23 of the largest.
+constexpr double WELD_TOLERANCE = 2.5e-7;
+constexpr double COPLANAR_TOLERANCE = 5e-7;
+constexpr double WELD_ROUNDINGS = 2.0;
+constexpr double COPLANAR_ROUNDINGS = 4.0;
+constexpr double SINGLE_PRECISION = 1.0 / (1 << 23);
 constexpr double JOGGLE = 5e-9;  // times the size
 
 using Cell = std::array<std::int64_t, 3>;
@@ -140,7 +147,28 @@ double signedVolume(const std::vector<Eigen::Vector3d>& points, const HullSurfac
 }
 }  // namespace
 
-std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, double tolerance)
+Precision precisionOf(const std::vector<Eigen::Vector3d>& points)
+{
+  Eigen::Vector3d low = points.front();
+  Eigen::Vector3d high = low;
+  bool is_finite = true;
+  for (const Eigen::Vector3d& point : points)
+  {
+    is_finite = is_finite && point.allFinite();
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  Precision precision;
+  precision.center = 0.5 * (low + high);
+  precision.size = is_finite ? 0.5 * (high - low).norm() : std::numeric_limits<double>::infinity();
+  const double rounding = SINGLE_PRECISION * low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff();
+  precision.weld = std::max(WELD_TOLERANCE * precision.size, WELD_ROUNDINGS * rounding);
+  precision.coplanar = std::max(COPLANAR_TOLERANCE * precision.size, COPLANAR_ROUNDINGS * rounding);
+  return precision;
+}
+
+std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, double tolerance,
+                                  std::vector<int>* numbers)
 {
   // Cells of twice the tolerance: what is near a point is in its cell or in the nearer neighbour along each axis.
   const double width = 2.0 * tolerance;
@@ -156,18 +184,21 @@ std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, do
       cell[i] = static_cast<std::int64_t>(std::floor(place));
       step[i] = place - std::floor(place) < 0.5 ? -1 : 1;
     }
-    bool is_new = true;
-    for (int k = 0; k < 8 && is_new; ++k)
+    int same = -1;
+    for (int k = 0; k < 8 && same < 0; ++k)
     {
       const Cell near = {cell[0] + (k & 1) * step[0], cell[1] + (k >> 1 & 1) * step[1], cell[2] + (k >> 2) * step[2]};
-      for (int other = table.last(near); other >= 0 && is_new; other = table.before(other))
-        is_new = (kept[other] - point).norm() > tolerance;
+      for (int other = table.last(near); other >= 0 && same < 0; other = table.before(other))
+        same = (kept[other] - point).norm() <= tolerance ? other : -1;
     }
-    if (is_new)
+    if (same < 0)
     {
+      same = static_cast<int>(kept.size());
       table.add(cell);
       kept.push_back(point);
     }
+    if (numbers != nullptr)
+      numbers->push_back(same);
   }
   return kept;
 }

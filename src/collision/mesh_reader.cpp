@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cmath>
 #include <stdexcept>
 
 #include "frictional_contact_sim/collision/polyhedron.h"
@@ -47,31 +48,25 @@ void addParts(const aiScene& scene, const aiNode& node, const aiMatrix4x4& paren
     addParts(scene, *node.mChildren[c], pose, scale, parts);
 }
 
-/// Vertices are compared by their coordinates: files repeat them for every triangle or every normal.
+/// Vertices are compared by their places: files repeat them for every triangle or every normal.
 bool isClosed(const MeshPart& part)
 {
-  std::vector<int> order(part.vertices.size());
-  for (size_t v = 0; v < order.size(); ++v)
-    order[v] = static_cast<int>(v);
-  const auto less = [&](int i, int k)
-  {
-    const Eigen::Vector3d& p = part.vertices[i];
-    const Eigen::Vector3d& q = part.vertices[k];
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-  };
-  std::sort(order.begin(), order.end(), less);
-  std::vector<int> number(order.size());
-  for (size_t k = 0; k < order.size(); ++k)
-    number[order[k]] = k > 0 && !less(order[k - 1], order[k]) ? number[order[k - 1]] : static_cast<int>(k);
+  const Precision precision = precisionOf(part.vertices);
+  if (!(precision.size > 0.0) || !std::isfinite(precision.size))
+    return false;
+  std::vector<int> number;
+  weld(part.vertices, precision.weld, &number);
   std::vector<std::array<int, 2>> sides;
   for (const std::array<int, 3>& triangle : part.triangles)
-    for (int k = 0; k < 3; ++k)
-    {
-      const int from = number[triangle[k]];
-      const int to = number[triangle[(k + 1) % 3]];
-      if (from != to)
-        sides.push_back({std::min(from, to), std::max(from, to)});
-    }
+  {
+    const int i = number[triangle[0]];
+    const int j = number[triangle[1]];
+    const int k = number[triangle[2]];
+    if (i == j || j == k || i == k)
+      continue;
+    for (const auto& [from, to] : {std::make_pair(i, j), std::make_pair(j, k), std::make_pair(k, i)})
+      sides.push_back({std::min(from, to), std::max(from, to)});
+  }
   std::sort(sides.begin(), sides.end());
   for (size_t k = 0; k + 1 < sides.size(); k += 2)
     if (sides[k] != sides[k + 1] || (k + 2 < sides.size() && sides[k] == sides[k + 2]))

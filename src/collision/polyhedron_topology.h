@@ -19,9 +19,21 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
  */
 void completeSearch(const std::vector<std::array<int, 2>>& pairs, Polyhedron& polyhedron);
 
-/** @brief The first point of every cluster of points within the tolerance of it. O(n), the order of the points decides.
+/**
+ * @brief The first point of every cluster of points within the tolerance of it. O(n), the order of the points decides.
+ * @param numbers takes, if wanted, which of them each point has become
  */
-std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, double tolerance);
+std::vector<Eigen::Vector3d> weld(const std::vector<Eigen::Vector3d>& points, double tolerance,
+                                  std::vector<int>* numbers = nullptr);
+/** @brief What single-precision files cannot tell from one point or one plane. */
+struct Precision
+{
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< of the bounding box [m]
+  double size = 0.0;  ///< half its diagonal; not a number or infinite when a point is [m]
+  double weld = 0.0;  ///< [m]
+  double coplanar = 0.0;  ///< [m]
+};
+Precision precisionOf(const std::vector<Eigen::Vector3d>& points);
 
 /** @brief A triangle of a hull; its neighbour k is across the side opposite corner k. Counter-clockwise from outside.
  */
