@@ -8,6 +8,7 @@
 
 #include "broad_phase.h"
 #include "frictional_contact_sim/collision/narrow_phase.h"
+#include "mesh_library.h"
 
 namespace frictional_contact_sim
 {
@@ -67,6 +68,7 @@ bool ShapeModel::mayCollide(int i, int k) const
 struct CollisionWorld::Impl
 {
   std::shared_ptr<const ShapeModel> model = std::make_shared<ShapeModel>();
+  MeshLibrary meshes;  ///< of this world alone: a copy that is loaded further reads its files again
   std::vector<Eigen::Isometry3d> poses;  ///< of the shapes, world
   std::vector<Bounds> bounds;
   BroadPhase broad_phase;
@@ -184,7 +186,7 @@ CollisionWorld& CollisionWorld::operator=(const CollisionWorld& other)
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
 CollisionWorld& CollisionWorld::operator=(CollisionWorld&&) noexcept = default;
 
-int CollisionWorld::addBody(const MultibodyModel& model)
+int CollisionWorld::addBody(const MultibodyModel& model, std::vector<std::string>* warnings)
 {
   const int index = static_cast<int>(impl_->model->bodies.size());
   CollidingBody body;
@@ -196,23 +198,22 @@ int CollisionWorld::addBody(const MultibodyModel& model)
   for (const Frame& frame : model.frames)
     body.frame_names.push_back(frame.name);
   // all meshes first: when one cannot be read the world stays as it was
-  std::vector<Instance> instances;
+  std::vector<std::vector<ConvexShape>> parts;
   for (const CollisionShape& shape : model.shapes)
-  {
-    Instance instance;
-    instance.shape = makeShape(shape.geometry);
-    instance.placement = shape.placement;
-    const Joint& joint = model.joints[shape.link];
-    instance.is_immobile = joint.type == JointType::FIXED && joint.parent < 0;
-    instances.push_back(std::move(instance));
-  }
-  for (size_t k = 0; k < instances.size(); ++k)
+    parts.push_back(impl_->meshes.shapesOf(shape.geometry, body.frame_names.at(shape.frame), warnings));
+  for (size_t k = 0; k < parts.size(); ++k)
   {
     const CollisionShape& shape = model.shapes[k];
-    const int handle = impl_->addInstance(std::move(instances[k]), {index, shape.link, shape.frame, static_cast<int>(k),
-                                                                    body.frame_names.at(shape.frame), shape.name});
-    body.shapes.push_back(handle);
-    impl_->setPose(handle, shape.placement);
+    const Joint& joint = model.joints[shape.link];
+    const bool is_immobile = joint.type == JointType::FIXED && joint.parent < 0;
+    for (ConvexShape& part : parts[k])
+    {
+      const int handle = impl_->addInstance(
+          {std::move(part), shape.placement, is_immobile},
+          {index, shape.link, shape.frame, static_cast<int>(k), body.frame_names.at(shape.frame), shape.name});
+      body.shapes.push_back(handle);
+      impl_->setPose(handle, shape.placement);
+    }
   }
   impl_->edit().bodies.push_back(std::move(body));
   return index;
@@ -312,6 +313,21 @@ const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double
       impl_->addPair(pair, margin);
   }
   return impl_->contacts;
+}
+
+std::vector<double> CollisionWorld::meshReach(int body) const
+{
+  std::vector<double> reach;
+  for (const int handle : impl_->body(body).shapes)
+  {
+    const Instance& instance = impl_->model->instances[handle];
+    const size_t index = static_cast<size_t>(impl_->model->infos[handle].index);
+    reach.resize(std::max(reach.size(), index + 1), 0.0);
+    if (instance.shape.kind == ShapeKind::HULL)
+      for (const Eigen::Vector3d& vertex : instance.shape.core.vertices)
+        reach[index] = std::max(reach[index], (instance.placement * vertex).norm());
+  }
+  return reach;
 }
 
 double CollisionWorld::lowestPoint(int body) const

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "polyhedron_search.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -23,7 +25,8 @@ struct ShapeMaker
 {
   ConvexShape operator()(const Sphere& sphere) const
   {
-    requirePositive(sphere.radius, "sphere radius");
+    if (sphere.radius != 0.0)  // a point: robots are published with such contact points
+      requirePositive(sphere.radius, "sphere radius");
     ConvexShape shape;
     shape.kind = ShapeKind::SPHERE;
     shape.radius = sphere.radius;
@@ -102,16 +105,18 @@ ConvexShape makeShape(const Geometry& geometry)
   return std::visit(ShapeMaker(), geometry);
 }
 
+ConvexShape makeShape(Polyhedron polyhedron)
+{
+  return ShapeMaker::fromPolyhedron(std::move(polyhedron), ShapeKind::HULL);
+}
+
 double lowestAlong(const ConvexShape& shape, const Eigen::Vector3d& n)
 {
   if (shape.kind == ShapeKind::HALF_SPACE)
     return n.z() < 0.0 && n.x() == 0.0 && n.y() == 0.0 ? 0.0 : -std::numeric_limits<double>::infinity();
   if (shape.kind == ShapeKind::CYLINDER)
     return -shape.radius * std::hypot(n.x(), n.y()) - shape.half_length * std::abs(n.z());
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& vertex : shape.core.vertices)
-    lowest = std::min(lowest, n.dot(vertex));
-  return lowest - shape.radius;
+  return n.dot(shape.core.vertices[farthestVertex(shape.core, -n)]) - shape.radius;
 }
 
 }  // namespace frictional_contact_sim

@@ -4,51 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "polyhedron_search.h"
+
 namespace frictional_contact_sim
 {
 namespace
 {
 constexpr double DEEP = 1e-3;  // times the size: overlap that no simulation step leaves behind
-constexpr size_t MAX_BRUTE_FORCE = 24;  // beyond, climbing along the edges is faster
-
-int climb(const Polyhedron& core, const Eigen::Vector3d& direction)
-{
-  int best = 0;
-  double reach = direction.dot(core.vertices[0]);
-  bool has_moved = true;
-  while (has_moved)
-  {
-    has_moved = false;
-    const int from = best;
-    for (int k = core.neighbour_first[from]; k < core.neighbour_first[from + 1]; ++k)
-    {
-      const double other = direction.dot(core.vertices[core.neighbours[k]]);
-      if (other > reach)
-      {
-        reach = other;
-        best = core.neighbours[k];
-        has_moved = true;
-      }
-    }
-  }
-  return best;
-}
-
-int farthestVertex(const Polyhedron& core, const Eigen::Vector3d& direction)
-{
-  int best = 0;
-  double reach = direction.dot(core.vertices[0]);
-  for (size_t v = 1; v < core.vertices.size(); ++v)
-  {
-    const double other = direction.dot(core.vertices[v]);
-    if (other > reach)
-    {
-      reach = other;
-      best = static_cast<int>(v);
-    }
-  }
-  return best;
-}
+// Times the size: a point so near the plane of a flat polygon is in front of it, whatever the round-off says.
+constexpr double IN_FRONT = 1e-9;
 
 Eigen::Vector3d cylinderPoint(const ConvexShape& shape, const Eigen::Vector3d& direction)
 {
@@ -79,8 +43,7 @@ int CoreView::support(const Eigen::Vector3d& direction, Eigen::Vector3d& point) 
       index = (local.x() > 0.0 ? 1 : 0) | (local.y() > 0.0 ? 2 : 0) | (local.z() > 0.0 ? 4 : 0);
       break;
     default:
-      index = shape->core.vertices.size() > MAX_BRUTE_FORCE ? climb(shape->core, local)
-                                                            : farthestVertex(shape->core, local);
+      index = nearlyFarthestVertex(shape->core, local);
   }
   point = transformed(*this, shape->core.vertices[index]);
   return index;
@@ -109,9 +72,7 @@ namespace
 /// Size to compare with: the smaller extended core of the two.
 double coreSize(const CoreView& a, const CoreView& b)
 {
-  const double size_a = a.shape->bounding_radius;
-  const double size_b = b.shape->bounding_radius;
-  return std::min(size_a, size_b);
+  return smallerSize(*a.shape, *b.shape);
 }
 
 /// Direction to leave b from a point inside it: the nearest face, or the nearest side of a cylinder.
@@ -128,10 +89,11 @@ Eigen::Vector3d wayOut(const CoreView& b, const Eigen::Vector3d& point)
       best.z() = local.z() < 0.0 ? -1.0 : 1.0;
   }
   double largest = -std::numeric_limits<double>::infinity();
+  const double tie = b.core().is_flat ? IN_FRONT * b.core().size : 0.0;
   for (const Polyhedron::Face& face : b.core().faces)
   {
     const double distance = face.normal.dot(local) - face.offset;
-    if (distance > largest)
+    if (distance > largest + tie)
     {
       largest = distance;
       best = face.normal;
@@ -142,14 +104,14 @@ Eigen::Vector3d wayOut(const CoreView& b, const Eigen::Vector3d& point)
 
 bool isSolid(const CoreView& view)
 {
-  return view.shape->kind == ShapeKind::CYLINDER || !view.core().faces.empty();
+  return view.shape->kind == ShapeKind::CYLINDER || (!view.core().faces.empty() && !view.core().is_flat);
 }
 
 Eigen::Vector3d firstDirection(const CoreView& a, const CoreView& b)
 {
   for (double shrink : {0.99, 0.9, 0.5, 0.0})
   {
-    // a segment or a point in the surface of b gains nothing from being shrunk itself
+    // a polygon, segment or point in the surface of b gains nothing from being shrunk itself
     CoreView small_a = a;
     CoreView small_b = b;
     (isSolid(a) ? small_a : small_b).shrink = shrink;

@@ -8,6 +8,7 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 
 #include "frictional_contact_sim/collision/convex_shape.h"
@@ -26,9 +27,16 @@ struct CoreView
   Eigen::Vector3d interior() const { return rotation * shape->core.interior + translation; }
   /** @brief Farthest point along direction. @return its vertex, -1 on a cylinder */
   int support(const Eigen::Vector3d& direction, Eigen::Vector3d& point) const;
-  /** @brief The same over all vertices one by one; support() may be a merging tolerance of the hull short. */
+  /** @brief The same, exact: support() may be Polyhedron::slack short. Of several vertices the first. */
   int exactSupport(const Eigen::Vector3d& direction, Eigen::Vector3d& point) const;
 };
+
+/** @brief Size that tolerances of a pair are of: the smaller one that is not a point [m]. */
+inline double smallerSize(const ConvexShape& a, const ConvexShape& b)
+{
+  const double smaller = std::min(a.bounding_radius, b.bounding_radius);
+  return smaller > 0.0 ? smaller : std::max(a.bounding_radius, b.bounding_radius);
+}
 
 /** @brief s(n) = min over a of n . x - max over b of n . x: a lower bound of the distance for every unit n. */
 double separation(const CoreView& a, const CoreView& b, const Eigen::Vector3d& n);

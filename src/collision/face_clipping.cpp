@@ -93,23 +93,6 @@ void clipSegment(const Reference& reference, double tolerance, Manifold& work)
   }
 }
 
-int incidentFace(const CoreView& view, const Eigen::Vector3d& normal)
-{
-  const Eigen::Vector3d local = view.rotation.transpose() * normal;
-  int best = 0;
-  double lowest = 2.0;
-  for (size_t f = 0; f < view.core().faces.size(); ++f)
-  {
-    const double cosine = view.core().faces[f].normal.dot(local);
-    if (cosine < lowest - 1e-9)  // ties go to the first face
-    {
-      lowest = cosine;
-      best = static_cast<int>(f);
-    }
-  }
-  return best;
-}
-
 void addClipPoint(const CoreView& view, int vertex, int edge, const Reference& reference, Manifold& work)
 {
   work.polygon.push_back({view.vertex(vertex), makeFeature(FeatureKind::VERTEX, vertex), reference.whole(), edge});
@@ -154,7 +137,7 @@ void clipIncident(const CorePair& pair, const Reference& reference, const CoreVi
       work.polygon.clear();
     return;
   }
-  const int face_index = incidentFace(incident, reference.normal);
+  const int face_index = alignedFace(incident, -reference.normal);
   const Polyhedron::Face& face = core.faces[face_index];
   for (int k = 0; k < face.size; ++k)
     addClipPoint(incident, core.face_vertices[face.first + k], core.face_edges[face.first + k], reference, work);

@@ -4,6 +4,7 @@
 
 #include "cylinder_feature.h"
 #include "frictional_contact_sim/collision/narrow_phase.h"
+#include "polyhedron_search.h"
 
 namespace frictional_contact_sim
 {
@@ -43,14 +44,15 @@ void roundedOnPlane(const ConvexShape& shape, const Eigen::Isometry3d& pose, dou
 {
   const Eigen::Vector3d up = pose.linear().row(2).transpose();
   const double height = pose.translation().z() - shape.radius;
-  for (size_t v = 0; v < shape.core.vertices.size(); ++v)
+  verticesBelow(shape.core, up, margin - height + 1e-12 * (margin + std::abs(height)), manifold.search);
+  for (const int v : manifold.search.found)
   {
     const double gap = up.dot(shape.core.vertices[v]) + height;
     if (gap <= margin)
     {
       Eigen::Vector3d point = pose * shape.core.vertices[v];
       point.z() = gap;
-      addPoint(point, margin, makeFeature(FeatureKind::VERTEX, static_cast<int>(v)), manifold);
+      addPoint(point, margin, makeFeature(FeatureKind::VERTEX, v), manifold);
     }
   }
 }

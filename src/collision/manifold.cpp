@@ -21,6 +21,7 @@ void Manifold::reserve(size_t vertices)
   clipped.reserve(room);
   corners.reserve(room);
   side_normals.reserve(room);
+  search.reserve(vertices);
 }
 
 void sortManifold(Manifold& manifold)

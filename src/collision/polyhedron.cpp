@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <utility>
 
 #include "polyhedron_topology.h"
@@ -31,24 +31,63 @@ void setBounds(Polyhedron& polyhedron)
 
 void setNeighbours(Polyhedron& polyhedron)
 {
-  std::vector<std::vector<int>> lists(polyhedron.vertices.size());
+  std::vector<int>& first = polyhedron.neighbour_first;
+  first.assign(polyhedron.vertices.size() + 1, 0);
   for (const Polyhedron::Edge& edge : polyhedron.edges)
+    for (const int vertex : edge.vertex)
+      ++first[vertex + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  polyhedron.neighbours.resize(first.back());
+  polyhedron.neighbour_edges.resize(first.back());
+  std::vector<int> next(first.begin(), first.end() - 1);
+  for (size_t e = 0; e < polyhedron.edges.size(); ++e)
+    for (const int end : {0, 1})
+    {
+      const Polyhedron::Edge& edge = polyhedron.edges[e];
+      const int place = next[edge.vertex[end]]++;
+      polyhedron.neighbours[place] = edge.vertex[1 - end];
+      polyhedron.neighbour_edges[place] = static_cast<int>(e);
+    }
+}
+
+/// Edges in the order in which the loops first come to them. @return of every corner of the loops, one after the other
+std::vector<int> numberEdges(const std::vector<std::vector<int>>& loops, Polyhedron& polyhedron)
+{
+  struct Side
   {
-    lists[edge.vertex[0]].push_back(edge.vertex[1]);
-    lists[edge.vertex[1]].push_back(edge.vertex[0]);
-  }
-  polyhedron.neighbour_first.assign(1, 0);
-  for (const std::vector<int>& list : lists)
+    std::pair<int, int> ends;
+    int corner;
+    int face;
+    bool operator<(const Side& other) const { return ends != other.ends ? ends < other.ends : corner < other.corner; }
+  };
+  std::vector<Side> sides;
+  for (size_t f = 0; f < loops.size(); ++f)
+    for (size_t k = 0; k < loops[f].size(); ++k)
+      sides.push_back({std::minmax({loops[f][k], loops[f][(k + 1) % loops[f].size()]}), static_cast<int>(sides.size()),
+                       static_cast<int>(f)});
+  std::vector<Side> sorted = sides;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<int> first(sides.size());
+  for (size_t k = 0; k < sorted.size(); ++k)
+    first[sorted[k].corner] =
+        k > 0 && sorted[k].ends == sorted[k - 1].ends ? first[sorted[k - 1].corner] : sorted[k].corner;
+  std::vector<int> edge(sides.size());
+  for (size_t k = 0; k < sides.size(); ++k)
   {
-    polyhedron.neighbours.insert(polyhedron.neighbours.end(), list.begin(), list.end());
-    polyhedron.neighbour_first.push_back(static_cast<int>(polyhedron.neighbours.size()));
+    const bool is_new = first[k] == static_cast<int>(k);
+    edge[k] = is_new ? static_cast<int>(polyhedron.edges.size()) : edge[first[k]];
+    if (is_new)
+      polyhedron.edges.push_back({{sides[k].ends.first, sides[k].ends.second}, {sides[k].face, -1}});
+    else
+      polyhedron.edges[edge[k]].face[1] = sides[k].face;
   }
+  return edge;
 }
 }  // namespace
 
 void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& polyhedron)
 {
-  std::map<std::pair<int, int>, int> edge_index;
+  polyhedron.face_edges = numberEdges(loops, polyhedron);
   for (const std::vector<int>& loop : loops)
   {
     const int first = static_cast<int>(polyhedron.face_vertices.size());
@@ -59,12 +98,7 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
     {
       const int v0 = loop[k];
       const int v1 = loop[(k + 1) % size];
-      const auto key = std::minmax(v0, v1);
-      const auto [entry, is_new] = edge_index.try_emplace(key, static_cast<int>(polyhedron.edges.size()));
-      if (is_new)
-        polyhedron.edges.push_back({{key.first, key.second}});
       polyhedron.face_vertices.push_back(v0);
-      polyhedron.face_edges.push_back(entry->second);
       // Newell's normal, about a corner for accuracy: the area-weighted mean over the polygon
       normal += (polyhedron.vertices[v0] - origin).cross(polyhedron.vertices[v1] - origin);
     }
@@ -81,10 +115,9 @@ void completeTopology(const std::vector<std::vector<int>>& loops, Polyhedron& po
 
 int Polyhedron::findEdge(int vertex_0, int vertex_1) const
 {
-  const auto key = std::minmax(vertex_0, vertex_1);
-  for (size_t e = 0; e < edges.size(); ++e)
-    if (edges[e].vertex[0] == key.first && edges[e].vertex[1] == key.second)
-      return static_cast<int>(e);
+  for (int k = neighbour_first[vertex_0]; k < neighbour_first[vertex_0 + 1]; ++k)
+    if (neighbours[k] == vertex_1)
+      return neighbour_edges[k];
   return -1;
 }
 

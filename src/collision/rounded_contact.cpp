@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core_pair.h"
+#include "polyhedron_search.h"
 
 namespace frictional_contact_sim
 {
@@ -24,19 +25,7 @@ constexpr double LOOK_AHEAD_ANGLE = 0.1;
 
 int alignedFace(const CoreView& view, const Eigen::Vector3d& direction)
 {
-  const Eigen::Vector3d local = view.rotation.transpose() * direction;
-  int best = -1;
-  double largest = -2.0;
-  for (size_t f = 0; f < view.core().faces.size(); ++f)
-  {
-    const double cosine = view.core().faces[f].normal.dot(local);
-    if (cosine > largest + 1e-9)
-    {
-      largest = cosine;
-      best = static_cast<int>(f);
-    }
-  }
-  return best;
+  return nearestFace(view.core(), view.rotation.transpose() * direction);
 }
 
 FaceAxis faceAxis(const CorePair& pair, bool is_on_a, int face)
@@ -331,7 +320,7 @@ CorePair::CorePair(const ConvexShape& shape_a, const ConvexShape& shape_b, const
   : a{&shape_a, a_in_b.linear(), a_in_b.translation(), 1.0}
   , b{&shape_b, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 1.0}
   , margin(gap_margin)
-  , size(std::min(shape_a.bounding_radius, shape_b.bounding_radius))
+  , size(smallerSize(shape_a, shape_b))
   , manifold(contacts)
   , radius_a(shape_a.kind == ShapeKind::CYLINDER ? 0.0 : shape_a.radius)
   , radius_b(shape_b.kind == ShapeKind::CYLINDER ? 0.0 : shape_b.radius)

@@ -22,8 +22,7 @@ struct Reach
   double operator()(const Box& box) const { return box.half_size.norm(); }
   double operator()(const Cylinder& cylinder) const { return std::hypot(cylinder.radius, cylinder.half_length); }
   double operator()(const Capsule& capsule) const { return capsule.radius + capsule.half_length; }
-  // The mesh is not loaded here; a generous value only makes the look-ahead margin larger.
-  double operator()(const Mesh&) const { return 0.5; }
+  double operator()(const Mesh&) const { return 0.0; }
   double operator()(const HalfSpace&) const { return 0.0; }
 };
 
@@ -31,9 +30,16 @@ std::vector<double> linkExtents(const MultibodyModel& model)
 {
   std::vector<double> extents(model.links.size(), 0.0);
   for (const CollisionShape& shape : model.shapes)
-    extents[shape.link] =
-        std::max(extents[shape.link], shape.placement.translation().norm() + std::visit(Reach(), shape.geometry));
+    if (!std::holds_alternative<Mesh>(shape.geometry))  // known when it is loaded: BodyModel::setMeshReach
+      extents[shape.link] =
+          std::max(extents[shape.link], shape.placement.translation().norm() + std::visit(Reach(), shape.geometry));
   return extents;
+}
+
+void addMeshes(const MultibodyModel& model, const std::vector<double>& mesh_reach, std::vector<double>& extents)
+{
+  for (size_t k = 0; k < mesh_reach.size(); ++k)
+    extents[model.shapes[k].link] = std::max(extents[model.shapes[k].link], mesh_reach[k]);
 }
 
 std::vector<double> linkSizes(const MultibodyModel& model, const std::vector<double>& extents)
@@ -121,6 +127,13 @@ BodyModel::BodyModel(MultibodyModel multibody_model)
   for (const Joint& joint : tree.joints)
     if (velocitySize(joint.type) == 1)
       damping[joint.v_index] = joint.damping;
+}
+
+void BodyModel::setMeshReach(const std::vector<double>& mesh_reach)
+{
+  addMeshes(tree, mesh_reach, extents);
+  sizes = linkSizes(tree, extents);
+  reach = jointReach(tree, sizes);
 }
 
 bool BodyModel::isActuated(int joint) const

@@ -62,7 +62,7 @@ constexpr std::array ATTRIBUTES = {
     AttributeRule{"inertia", "iyz", 1, Range::ANY, Need::REQUIRED},
     AttributeRule{"inertia", "izz", 1, Range::ANY, Need::REQUIRED},
     AttributeRule{"box", "size", 3, Range::POSITIVE, Need::REQUIRED},
-    AttributeRule{"sphere", "radius", 1, Range::POSITIVE, Need::REQUIRED},
+    AttributeRule{"sphere", "radius", 1, Range::NOT_NEGATIVE, Need::REQUIRED},
     AttributeRule{"cylinder", "radius", 1, Range::POSITIVE, Need::REQUIRED},
     AttributeRule{"cylinder", "length", 1, Range::POSITIVE, Need::REQUIRED},
     AttributeRule{"capsule", "radius", 1, Range::POSITIVE, Need::REQUIRED},
@@ -255,6 +255,13 @@ void applyToElement(XMLElement& element, const std::string& source, OmissionTall
     const bool drawn_only = same(child->Name(), "visual") || same(child->Name(), "material");
     const ElementRule* rule = findRule(element, *child);
     const bool first = element.FirstChildElement(child->Name()) == child;
+    if (rule != nullptr && same(element.Name(), "geometry") && element.FirstChildElement() != child)
+    {
+      // urdfdom takes the first; what cannot be read was removed before
+      omissions.add("a second shape " + tag(*child) + " in " + tag(element), describeOwner(element));
+      element.DeleteChild(child);
+      continue;
+    }
     if (rule != nullptr && (first || rule->repeated))
     {
       if (!same(child->Name(), "gazebo"))

@@ -80,8 +80,8 @@ void CsvRecorder::recordContacts(const Simulator& simulator)
   {
     const ShapeInfo& a = simulator.shape(contact.shape_a);
     const ShapeInfo& b = simulator.shape(contact.shape_b);
-    contacts_ << simulator.time() << ',' << contact.id.number() << ',' << bodyName(a) << ',' << bodyName(b) << ',' << a.link_name
-              << ',' << b.link_name;
+    contacts_ << simulator.time() << ',' << contact.id.number() << ',' << bodyName(a) << ',' << bodyName(b) << ','
+              << a.link_name << ',' << b.link_name;
     write(contacts_, contact.position);
     write(contacts_, contact.normal);
     contacts_ << ',' << contact.gap;

@@ -174,10 +174,28 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
   return model;
 }
 
+/** @return index of the body in the collision world */
+int addShapes(const BodySpec& spec, const Draft& body, WorldModel& world)
+{
+  try
+  {
+    std::vector<std::string> warnings;
+    const int handle = world.collision.addBody(body.model.tree, &warnings);
+    for (const std::string& warning : warnings)
+      world.warnings.push_back("body '" + spec.name + "': " + warning);
+    body.model.setMeshReach(world.collision.meshReach(handle));
+    return handle;
+  }
+  catch (const ModelError& error)
+  {
+    throw ModelError((spec.urdf_path.empty() ? "robot_description" : spec.urdf_path) + ": " + error.what());
+  }
+}
+
 /** Adds the body's shapes, puts it on the ground where no pose is given, and gives it commands and wrenches. */
 void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world)
 {
-  const int handle = world.collision.addBody(body.model.tree);  // bodies and handles count alike
+  const int handle = addShapes(spec, body, world);  // bodies and handles count alike
   for (const auto& [link_1, link_2] : spec.disable_collisions)
     world.collision.disablePair(handle, link_1, link_2);
   Body moved(body.model, body.state);

@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
                     robot(link("a", inertial(1e300, "1 1 1")) + link("b", inertial(1e300, "1 1 1")) +
                           joint("j", "fixed", "a", "b", "<origin xyz=\'1e9 0 0\'/>")),
                     {"\'a\'", "overflow"}},
-        BadDocument{"sphere_of_no_radius", collision("<sphere radius='0'/>"), {"'a'", "<sphere>", "'0'"}},
+        BadDocument{"sphere_of_negative_radius", collision("<sphere radius='-1'/>"), {"'a'", "<sphere>", "'-1'"}},
         BadDocument{"box_of_negative_size", collision("<box size='1 -1 1'/>"), {"'a'", "<box>", "'1 -1 1'"}},
         BadDocument{"cylinder_without_length", collision("<cylinder radius='1'/>"), {"'a'", "length"}},
         BadDocument{"flat_mesh", collision("<mesh filename='m.stl' scale='1 1 0'/>"), {"'a'", "scale"}},

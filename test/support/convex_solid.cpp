@@ -180,9 +180,25 @@ ConvexSolid::ConvexSolid(const Geometry& geometry) : geometry_(geometry)
   else if (const auto* capsule = std::get_if<Capsule>(&geometry))
     addRound(capsule->radius, capsule->half_length, false);
   else if (const auto* mesh = std::get_if<Mesh>(&geometry))
-    addMesh(*mesh);
+    addHull(readMesh(mesh->path, mesh->scale));
   else
     throw std::invalid_argument("convex_solid: a geometry that is not a bounded convex one");
+}
+
+ConvexSolid::ConvexSolid(const std::vector<Eigen::Vector3d>& vertices) : geometry_(Mesh{"", Eigen::Vector3d::Ones()})
+{
+  addHull(vertices);
+}
+
+std::vector<ConvexSolid> ConvexSolid::solidsOf(const Geometry& geometry)
+{
+  std::vector<ConvexSolid> solids;
+  if (const auto* mesh = std::get_if<Mesh>(&geometry))
+    for (const MeshPart& part : readMeshParts(mesh->path, mesh->scale))
+      solids.emplace_back(part.vertices);
+  else
+    solids.emplace_back(geometry);
+  return solids;
 }
 
 void ConvexSolid::addBox(const Box& box)
@@ -230,9 +246,8 @@ void ConvexSolid::addRound(double cap_radius, double half_length, bool flat)
   }
 }
 
-void ConvexSolid::addMesh(const Mesh& mesh)
+void ConvexSolid::addHull(const std::vector<Eigen::Vector3d>& all)
 {
-  const std::vector<Eigen::Vector3d> all = readMesh(mesh.path, mesh.scale);
   hull_ = convexHullOf(all);
   std::map<int, int> corner;
   for (const std::array<int, 3>& triangle : hull_.triangles)
@@ -244,7 +259,7 @@ void ConvexSolid::addMesh(const Mesh& mesh)
       if (triangle[k] < triangle[(k + 1) % 3])
         edges.push_back({corner[triangle[k]], corner[triangle[(k + 1) % 3]]});
   if (points.empty())
-    return;
+    points = all;  // in one plane
   Eigen::Vector3d low = points.front();
   Eigen::Vector3d high = points.front();
   for (const Eigen::Vector3d& point : points)

@@ -7,8 +7,8 @@
  * Depth of a point p (shape frame, [m], positive inside, concave everywhere, so its maximum over a convex set is the
  * only one):  sphere R - |p|,  box min_i (h_i - |p_i|),  cylinder min(R - |p_xy|, l - |p_z|),  capsule R - distance to
  * the axis,  mesh min_i (d_i - n_i . p) over the planes of the convex hull of its vertices. The hull is found here, by
- * Quickhull (Barber, Dobkin, Huhdanpaa 1996) with every d_i the largest n_i . x over all vertices; a mesh's vertices
- * are the only thing taken from collision/.
+ * Quickhull (Barber, Dobkin, Huhdanpaa 1996) with every d_i the largest n_i . x over all vertices; a mesh's vertices,
+ * part by part, are the only thing taken from collision/. A flat polygon has points and no inside.
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -39,6 +39,10 @@ class ConvexSolid
 {
 public:
   explicit ConvexSolid(const Geometry& geometry);
+  /** @brief The hull of some points. */
+  explicit ConvexSolid(const std::vector<Eigen::Vector3d>& vertices);
+  /** @brief One solid, for a mesh one for each of its parts. */
+  static std::vector<ConvexSolid> solidsOf(const Geometry& geometry);
 
   double depth(const Eigen::Vector3d& point) const;
   /** @brief Largest -n . x over the solid (n unit, shape frame): how far it reaches against n. Exact. */
@@ -55,7 +59,7 @@ public:
 private:
   void addBox(const Box& box);
   void addRound(double cap_radius, double half_length, bool flat);
-  void addMesh(const Mesh& mesh);
+  void addHull(const std::vector<Eigen::Vector3d>& all);
 
   Geometry geometry_;
   Hull hull_;

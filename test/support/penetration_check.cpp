@@ -96,8 +96,9 @@ PenetrationCheck::PenetrationCheck(const Simulator& simulator) : simulator_(simu
     for (const CollisionShape& shape : model.shapes)
     {
       const Joint& joint = model.joints[shape.link];
-      parts_.push_back({ConvexSolid(shape.geometry), body, shape.link, model.frames[shape.frame].name, shape.placement,
-                        joint.type == JointType::FIXED && joint.parent < 0});
+      for (const ConvexSolid& solid : ConvexSolid::solidsOf(shape.geometry))
+        parts_.push_back({solid, body, shape.link, model.frames[shape.frame].name, shape.placement,
+                          joint.type == JointType::FIXED && joint.parent < 0});
     }
   }
   noted_.assign(simulator.bodyCount(), 0.0);

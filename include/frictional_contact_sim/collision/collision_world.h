@@ -43,7 +43,7 @@ struct ShapeInfo
   int body = -1;  ///< index from addBody; -1 for static shapes
   int link = -1;  ///< link in the body's model; -1 for static shapes
   int frame = -1;  ///< URDF link in the body's model
-  int index = -1;  ///< in the body's model.shapes; -1 for static shapes
+  int index = -1;  ///< in the body's model.shapes, all parts of a mesh have the same; -1 for static shapes
   std::string link_name;  ///< URDF link name ("ground" for the plane)
   std::string name;  ///< collision name
 };
@@ -66,12 +66,14 @@ public:
   CollisionWorld& operator=(CollisionWorld&&) noexcept;
 
   /**
-   * @brief Adds all shapes of a body; loads its meshes (convex hulls). Pairs on one link, and on bodies joined by one
-   * joint, never collide; nor do shapes of a fixed base with static shapes.
+   * @brief Adds all shapes of a body; loads its meshes, each file once: a convex hull for each of its parts, with a
+   * handle of its own and the ShapeInfo of the mesh. Pairs on one link, and on bodies joined by one joint, never
+   * collide; nor do shapes of a fixed base with static shapes.
+   * @param warnings takes a line for each mesh that its hulls add to, naming link and file
    * @return index of the body
-   * @throws ModelError for a mesh that cannot be read: file and reason
+   * @throws ModelError for a mesh that cannot be read: link, file and reason
    */
-  int addBody(const MultibodyModel& model);
+  int addBody(const MultibodyModel& model, std::vector<std::string>* warnings = nullptr);
   /** @brief Adds a shape fixed in the world, the ground plane for example. @return shape handle */
   int addStatic(const Geometry& geometry, const Eigen::Isometry3d& pose, const std::string& name);
 
@@ -102,6 +104,8 @@ public:
    */
   const std::vector<ContactPoint>& detect(const std::vector<double>& body_margins);
 
+  /** @brief Of each of the body's model.shapes that is a mesh its farthest point from the link's origin [m], else 0. */
+  std::vector<double> meshReach(int body) const;
   /** @brief Lowest z over all points of all shapes of a body at the poses set [m]; +infinity without shapes. */
   double lowestPoint(int body) const;
 

@@ -3,8 +3,9 @@
  * @file convex_shape.h
  * @brief A collision shape made ready for the narrow phase: a convex core and a radius around it.
  *
- * sphere = point + radius, capsule = segment + radius, box and hull = polyhedron + 0; the cylinder is its own core
- * (axis z, flat discs; the polyhedron holds its axis); the half space z <= 0 is the only unbounded shape.
+ * sphere = point + radius, capsule = segment + radius, box and hull = polyhedron + 0 (a flat polygon is a hull); the
+ * cylinder is its own core (axis z, flat discs; the polyhedron holds its axis); the half space z <= 0 is the only
+ * unbounded shape.
  */
 #include <Eigen/Core>
 
@@ -34,8 +35,13 @@ struct ConvexShape
   double bounding_radius = 0.0;  ///< of the sphere about center [m]
 };
 
-/** @brief Loads meshes. @throws ModelError (mesh), std::invalid_argument (a size that is not positive) */
+/**
+ * @brief A mesh becomes one hull around all its parts.
+ * @throws ModelError (mesh), std::invalid_argument (a size that is not positive)
+ */
 ConvexShape makeShape(const Geometry& geometry);
+/** @brief A hull or flat polygon as shape. */
+ConvexShape makeShape(Polyhedron polyhedron);
 
 /** @brief Smallest n . x over the shape, n in the shape frame; -infinity for a half space unless n is its -z. */
 double lowestAlong(const ConvexShape& shape, const Eigen::Vector3d& n);

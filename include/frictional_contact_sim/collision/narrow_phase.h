@@ -45,6 +45,7 @@ struct Manifold
   std::vector<ClipPoint> clipped;
   std::vector<Eigen::Vector3d> corners;  ///< of the reference face
   std::vector<Eigen::Vector3d> side_normals;  ///< outwards, in the plane of the reference face
+  VertexSearch search;
 
   /** @brief Room for shapes with up to this many vertices, so that no later call allocates. */
   void reserve(size_t vertices);

@@ -43,6 +43,9 @@ struct BodyModel
   bool isotropic;  ///< the root link's principal moments are equal
   BaseMotion base_motion;
 
+  /** @brief What meshes add to extents, sizes and reach: CollisionWorld::meshReach. Until then they count as nothing.
+   */
+  void setMeshReach(const std::vector<double>& mesh_reach);
   /** @brief True for joints with exactly one coordinate that do not mimic another: those take commands. */
   bool isActuated(int joint) const;
   /** @brief Index in v of a joint with one coordinate. */

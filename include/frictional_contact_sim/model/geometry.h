@@ -11,7 +11,7 @@ namespace frictional_contact_sim
 {
 struct Sphere
 {
-  double radius;  ///< [m] > 0
+  double radius;  ///< [m] >= 0, 0 = a point
 };
 struct Box
 {
