@@ -7,6 +7,7 @@
 
 #include "broad_phase.h"
 #include "frictional_contact_sim/collision/narrow_phase.h"
+#include "oriented_boxes.h"
 
 namespace frictional_contact_sim
 {
@@ -142,7 +143,13 @@ struct CollisionWorld::Impl
   void collidePair(const ShapePair& pair, double margin)
   {
     const Eigen::Isometry3d a_in_b = poses[pair.b].inverse(Eigen::Isometry) * poses[pair.a];
-    collide(model->instances[pair.a].shape, model->instances[pair.b].shape, a_in_b, margin, manifold);
+    const ConvexShape& a = model->instances[pair.a].shape;
+    const ConvexShape& b = model->instances[pair.b].shape;
+    manifold.count = 0;
+    // a ball is quicker looked at than boxed
+    const bool has_ball = a.kind == ShapeKind::SPHERE || b.kind == ShapeKind::SPHERE;
+    if (has_ball || !boxesAreApart(a, b, a_in_b, margin))
+      collide(a, b, a_in_b, margin, manifold);
   }
 
   /// Adds the points of a pair, in the world.

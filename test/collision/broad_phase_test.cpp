@@ -178,6 +178,40 @@ TEST(BroadPhaseKindTest, WhatIsNotANumberTouchesNothingAndSpoilsNothing)
   }
 }
 
+TEST(OrientedBoxesTest, NeverPartWhatTheNarrowPhaseFindsNear)
+{
+  // Long, flat and round shapes in random poses: the world, which asks the boxes first, against the narrow phase alone.
+  const std::vector<Geometry> kinds = {Capsule{0.02, 0.3}, Box{{0.3, 0.2, 0.01}}, Cylinder{0.2, 0.02},
+                                       Cylinder{0.01, 0.3}, Box{{0.1, 0.1, 0.1}}};
+  std::mt19937 random(11);
+  size_t contacts = 0;
+  int apart = 0;
+  for (const Geometry& first : kinds)
+    for (const Geometry& second : kinds)
+    {
+      CollisionWorld world;
+      world.addBody(freeBody({first}));
+      world.addBody(freeBody({second}));
+      for (int k = 0; k < 400; ++k)
+      {
+        const double margin = k % 2 == 0 ? 0.0 : uniform(random, 0.0, 0.1);
+        const Eigen::Isometry3d relative = randomPose(random, 0.4);
+        world.setLinkPose(0, 0, relative);
+        const auto expected = contactsOf(makeShape(first), makeShape(second), relative, margin);
+        const auto& found = world.detect(margin);
+        ASSERT_EQ(found.size(), expected.size()) << k;
+        for (size_t i = 0; i < found.size(); ++i)
+        {
+          EXPECT_EQ(found[i].gap, expected[i].gap) << k;
+        }
+        contacts += found.size();
+        apart += found.empty() ? 1 : 0;
+      }
+    }
+  EXPECT_GT(contacts, 3000u);
+  EXPECT_GT(apart, 3000);
+}
+
 TEST(BroadPhaseKindTest, TenThousandShapesTakeMemoryInProportion)
 {
   // n^2 bits alone would be 12 MB; nothing is asked here but that it works, times are in docs/large_scenes.md.
