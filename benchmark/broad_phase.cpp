@@ -1,5 +1,5 @@
-// Time and memory of the broad phase: balls in a loose grid that move by 1 mm a step, each its own body, and arrays of
-// boxes on one body each; FCL's trees against the list. Exponents: --benchmark_filter=..., complexity lines at the end.
+// Time and memory of a detection: balls in a loose grid, each its own body or ten in a row on one, that tremble by 1 mm
+// a step or move past each other, every other one by 1 mm a step along x; FCL's trees against the list.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
@@ -42,7 +42,7 @@ fcs::MultibodyModel rowOfBalls(int shapes)
 class Grid
 {
 public:
-  Grid(int bodies, int shapes, fcs::BroadPhaseKind kind) : random_(1)
+  Grid(int bodies, int shapes, fcs::BroadPhaseKind kind, bool passing = false) : passing_(passing), random_(1)
   {
     world_.setBroadPhase(kind);
     world_.addStatic(fcs::HalfSpace{}, Eigen::Isometry3d::Identity(), "ground");
@@ -64,7 +64,10 @@ public:
     std::uniform_real_distribution<double> step(-STEP, STEP);
     for (size_t b = 0; b < place_.size(); ++b)
     {
-      place_[b] += Eigen::Vector3d(step(random_), step(random_), step(random_));
+      if (!passing_)
+        place_[b] += Eigen::Vector3d(step(random_), step(random_), step(random_));
+      else if (b % 2 == 0)
+        place_[b].x() += STEP;
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = place_[b];
       world_.setLinkPose(static_cast<int>(b), 0, pose);
@@ -73,16 +76,17 @@ public:
   size_t detect() { return world_.detect(MARGIN).size(); }
 
 private:
+  bool passing_;
   fcs::CollisionWorld world_;
   std::vector<Eigen::Vector3d> place_;
   std::mt19937 random_;
 };
 
-void detect(benchmark::State& state, int shapes, fcs::BroadPhaseKind kind)
+void detect(benchmark::State& state, int shapes, fcs::BroadPhaseKind kind, bool passing)
 {
   const int bodies = static_cast<int>(state.range(0));
   const size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
-  Grid grid(bodies, shapes, kind);
+  Grid grid(bodies, shapes, kind, passing);
   grid.detect();
   const size_t after = mallinfo2().uordblks + mallinfo2().hblkhd;
   size_t contacts = 0;
@@ -106,11 +110,13 @@ void onlyMove(benchmark::State& state)
 
 #define SIZES RangeMultiplier(2)->Range(16, 1024)->Complexity()->Unit(benchmark::kMicrosecond)
 BENCHMARK(onlyMove)->Arg(216)->Arg(1000)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(detect, balls_list, 1, fcs::BroadPhaseKind::LIST)->SIZES;
-BENCHMARK_CAPTURE(detect, balls_fcl, 1, fcs::BroadPhaseKind::FCL)->SIZES;
-BENCHMARK_CAPTURE(detect, balls_auto, 1, fcs::BroadPhaseKind::AUTO)->SIZES;
-BENCHMARK_CAPTURE(detect, rows_of_10_list, 10, fcs::BroadPhaseKind::LIST)->SIZES;
-BENCHMARK_CAPTURE(detect, rows_of_10_fcl, 10, fcs::BroadPhaseKind::FCL)->SIZES;
+BENCHMARK_CAPTURE(detect, balls_list, 1, fcs::BroadPhaseKind::LIST, false)->SIZES;
+BENCHMARK_CAPTURE(detect, balls_fcl, 1, fcs::BroadPhaseKind::FCL, false)->SIZES;
+BENCHMARK_CAPTURE(detect, balls_auto, 1, fcs::BroadPhaseKind::AUTO, false)->SIZES;
+BENCHMARK_CAPTURE(detect, passing_list, 1, fcs::BroadPhaseKind::LIST, true)->SIZES->Arg(4096);
+BENCHMARK_CAPTURE(detect, passing_fcl, 1, fcs::BroadPhaseKind::FCL, true)->SIZES->Arg(4096);
+BENCHMARK_CAPTURE(detect, rows_of_10_list, 10, fcs::BroadPhaseKind::LIST, false)->SIZES;
+BENCHMARK_CAPTURE(detect, rows_of_10_fcl, 10, fcs::BroadPhaseKind::FCL, false)->SIZES;
 }  // namespace
 
 BENCHMARK_MAIN();

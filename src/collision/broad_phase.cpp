@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace frictional_contact_sim
 {
 namespace
 {
 /// AUTO: from this many bounded shapes on FCL's trees look, see docs/large_scenes.md.
-constexpr size_t FEWEST_FOR_TREES = 64;
+constexpr size_t FEWEST_FOR_TREES = 100;
 /// Room in a fat box: the larger of this share of the shape's least half extent...
 constexpr double ROOM_OF_SIZE = 0.1;
 /// ... and so many margins: the margin of a moving shape is some two steps of its travel.
@@ -161,13 +162,35 @@ void BroadPhase::renew(const std::vector<Bounds>& bounds, const PairRule& rule)
     searchTrees(rule);
   else
     searchList(rule);
-  std::sort(added_.begin(), added_.end(), isBefore);
+  sortAdded();
   merged_.resize(kept_.size() + added_.size());
   std::merge(kept_.begin(), kept_.end(), added_.begin(), added_.end(), merged_.begin(), isBefore);
   std::swap(kept_, merged_);
   for (const int handle : left_)
     has_left_[handle] = 0;
   is_searched_ = true;
+}
+
+/// By a with one count a handle, then the few of each a by b: linear, where a sort would cost more than the search.
+void BroadPhase::sortAdded()
+{
+  if (std::is_sorted(added_.begin(), added_.end(), isBefore))
+    return;
+  begin_.assign(boxes_.size() + 1, 0);
+  for (const ShapePair& pair : added_)
+    ++begin_[pair.a + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  merged_.resize(added_.size());
+  for (const ShapePair& pair : added_)
+    merged_[begin_[pair.a]++] = pair;
+  // begin_[a] is now the end of a's pairs
+  int first = 0;
+  for (const int last : begin_)
+  {
+    std::sort(merged_.begin() + first, merged_.begin() + last, isBefore);
+    first = last;
+  }
+  std::swap(added_, merged_);
 }
 
 /// One by one.

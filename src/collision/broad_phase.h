@@ -75,6 +75,7 @@ private:
   void findLeft(const std::vector<Bounds>& bounds);
   void fatten(int handle, const Bounds& bounds);
   void renew(const std::vector<Bounds>& bounds, const PairRule& rule);
+  void sortAdded();
   void searchList(const PairRule& rule);
   void searchTrees(const PairRule& rule);
   void searchPlanes(const std::vector<Bounds>& bounds, const PairRule& rule);
@@ -107,6 +108,7 @@ private:
   std::vector<ShapePair> kept_;  ///< with overlapping fat boxes, sorted
   std::vector<ShapePair> added_;
   std::vector<ShapePair> merged_;
+  std::vector<int> begin_;  ///< of the pairs of every a
   std::vector<ShapePair> candidates_;
 };
 
