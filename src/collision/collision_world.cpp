@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include "broad_phase.h"
 #include "frictional_contact_sim/collision/narrow_phase.h"
 #include "mesh_library.h"
+#include "oriented_boxes.h"
 
 namespace frictional_contact_sim
 {
@@ -29,19 +29,33 @@ struct CollidingBody
   std::vector<int> shapes;  ///< handles
   std::vector<std::string> frame_names;
   bool is_mounted = false;  ///< on a fixed base, no floating joint
-  std::set<std::array<int, 2>> disabled;  ///< frames, the lower first
-  std::set<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape
+  std::vector<std::array<int, 2>> disabled;  ///< frames, the lower first; sorted
+  std::vector<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape; sorted
 };
 
+bool contains(const std::vector<std::array<int, 2>>& sorted, const std::array<int, 2>& pair)
+{
+  return std::binary_search(sorted.begin(), sorted.end(), pair);
+}
+
+void insert(std::vector<std::array<int, 2>>& sorted, const std::array<int, 2>& pair)
+{
+  const auto place = std::lower_bound(sorted.begin(), sorted.end(), pair);
+  if (place == sorted.end() || *place != pair)
+    sorted.insert(place, pair);
+}
+
 /// What poses do not change: written while a world is loaded, then shared by its copies.
-struct ShapeModel
+struct ShapeModel : PairRule
 {
   std::vector<Instance> instances;
   std::vector<ShapeInfo> infos;
   std::vector<CollidingBody> bodies;
   size_t most_vertices = 0;
 
-  bool mayCollide(int i, int k) const;
+  bool mayCollide(int i, int k) const override;
+  bool isStatic(int i) const override { return infos[i].body < 0; }
+  bool isImmobile(int i) const override { return instances[i].is_immobile; }
 };
 
 bool ShapeModel::mayCollide(int i, int k) const
@@ -53,7 +67,7 @@ bool ShapeModel::mayCollide(int i, int k) const
   if (first.body < 0 || second.body < 0)
   {
     const ShapeInfo& moving = first.body < 0 ? second : first;
-    return bodies[moving.body].disabled_static.count({moving.frame, first.body < 0 ? i : k}) == 0;
+    return !contains(bodies[moving.body].disabled_static, {moving.frame, first.body < 0 ? i : k});
   }
   if (first.body != second.body)
     return true;
@@ -61,7 +75,7 @@ bool ShapeModel::mayCollide(int i, int k) const
   const bool is_adjacent =
       first.link == second.link || body.parent[first.link] == second.link || body.parent[second.link] == first.link;
   return !is_adjacent &&
-         body.disabled.count({std::min(first.frame, second.frame), std::max(first.frame, second.frame)}) == 0;
+         !contains(body.disabled, {std::min(first.frame, second.frame), std::max(first.frame, second.frame)});
 }
 }  // namespace
 
@@ -72,17 +86,11 @@ struct CollisionWorld::Impl
   std::vector<Eigen::Isometry3d> poses;  ///< of the shapes, world
   std::vector<Bounds> bounds;
   BroadPhase broad_phase;
-  bool are_pairs_current = false;
   Manifold manifold;
   std::vector<ContactPoint> contacts;
 
   Impl() = default;
-  Impl(const Impl& other)
-    : model(other.model)
-    , poses(other.poses)
-    , bounds(other.bounds)
-    , broad_phase(other.broad_phase)
-    , are_pairs_current(other.are_pairs_current)
+  Impl(const Impl& other) : model(other.model), poses(other.poses), bounds(other.bounds), broad_phase(other.broad_phase)
   {
     manifold.reserve(2 * model->most_vertices);
   }
@@ -90,7 +98,7 @@ struct CollisionWorld::Impl
   /// To load something: a model that is shared is copied first.
   ShapeModel& edit()
   {
-    are_pairs_current = false;
+    broad_phase.clear();
     if (model.use_count() > 1)
       model = std::make_shared<ShapeModel>(*model);
     return const_cast<ShapeModel&>(*model);  // nobody else has it
@@ -121,29 +129,20 @@ struct CollisionWorld::Impl
       box.half_extent = pose.linear().cwiseAbs() * shape.half_extent;
   }
 
-  void updatePairs()
-  {
-    if (are_pairs_current)
-      return;
-    std::vector<ShapePair> pairs;
-    const int n = static_cast<int>(poses.size());
-    for (int i = 0; i < n; ++i)
-    {
-      for (int k = i + 1; k < n; ++k)
-        if (model->mayCollide(i, k))
-          pairs.push_back(model->infos[i].body < 0 ? ShapePair{k, i} : ShapePair{i, k});
-    }
-    std::sort(pairs.begin(), pairs.end(),
-              [](const ShapePair& p, const ShapePair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
-    broad_phase.reset(std::move(pairs), bounds);
-    are_pairs_current = true;
-  }
+  /// Pairs within their margins, see Bounds::margin.
+  const std::vector<ShapePair>& candidates() { return broad_phase.candidates(bounds, *model); }
 
   /// Fills the manifold of a pair, in the frame of b.
   void collidePair(const ShapePair& pair, double margin)
   {
     const Eigen::Isometry3d a_in_b = poses[pair.b].inverse(Eigen::Isometry) * poses[pair.a];
-    collide(model->instances[pair.a].shape, model->instances[pair.b].shape, a_in_b, margin, manifold);
+    const ConvexShape& a = model->instances[pair.a].shape;
+    const ConvexShape& b = model->instances[pair.b].shape;
+    manifold.count = 0;
+    // a ball is quicker looked at than boxed
+    const bool has_ball = a.kind == ShapeKind::SPHERE || b.kind == ShapeKind::SPHERE;
+    if (has_ball || !boxesAreApart(a, b, a_in_b, margin))
+      collide(a, b, a_in_b, margin, manifold);
   }
 
   /// Adds the points of a pair, in the world.
@@ -157,6 +156,14 @@ struct CollisionWorld::Impl
       contacts.push_back({makeContactId(pair.a, pair.b, point.feature_a, point.feature_b), pair.a, pair.b,
                           pose * point.position, pose.linear() * point.normal, point.gap});
     }
+  }
+
+  const std::vector<ContactPoint>& detect()
+  {
+    contacts.clear();
+    for (const ShapePair& pair : candidates())
+      addPair(pair, std::max(bounds[pair.a].margin, bounds[pair.b].margin));
+    return contacts;
   }
 
   const CollidingBody& body(int index) const
@@ -243,14 +250,15 @@ void CollisionWorld::disablePair(int body, const std::string& link_1, const std:
     frames[k] = static_cast<int>(found - names.begin());
   }
   std::sort(frames.begin(), frames.end());
-  impl_->edit().bodies[body].disabled.insert(frames);
+  insert(impl_->edit().bodies[body].disabled, frames);
 }
 
 std::vector<std::string> CollisionWorld::disableOverlaps()
 {
   std::vector<std::string> disabled;
-  impl_->updatePairs();
-  const std::vector<ShapePair> candidates = impl_->broad_phase.candidates(impl_->bounds, 0.0);
+  for (Bounds& box : impl_->bounds)
+    box.margin = 0.0;
+  const std::vector<ShapePair> candidates = impl_->candidates();
   for (const ShapePair& pair : candidates)
   {
     const ShapeModel& model = *impl_->model;
@@ -266,7 +274,7 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
                     [](const PairContact& point) { return point.gap < OVERLAP_GAP; }))
     {
       if (is_mounted)
-        impl_->edit().bodies[a.body].disabled_static.insert({a.frame, pair.b});
+        insert(impl_->edit().bodies[a.body].disabled_static, {a.frame, pair.b});
       else
         disablePair(a.body, a.link_name, b.link_name);
       disabled.push_back(names);
@@ -292,27 +300,22 @@ void CollisionWorld::setLinkPose(int body, int link, const Eigen::Isometry3d& po
 
 const std::vector<ContactPoint>& CollisionWorld::detect(double margin)
 {
-  impl_->updatePairs();
-  impl_->contacts.clear();
-  for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, margin))
-    impl_->addPair(pair, margin);
-  return impl_->contacts;
+  for (Bounds& box : impl_->bounds)
+    box.margin = margin;
+  return impl_->detect();
 }
 
 const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double>& body_margins)
 {
-  impl_->updatePairs();
-  impl_->contacts.clear();
   const std::vector<ShapeInfo>& infos = impl_->model->infos;
-  const auto marginOf = [&](int handle) { return infos[handle].body < 0 ? -1.0 : body_margins[infos[handle].body]; };
-  const double largest = body_margins.empty() ? 0.0 : *std::max_element(body_margins.begin(), body_margins.end());
-  for (const ShapePair& pair : impl_->broad_phase.candidates(impl_->bounds, largest))
-  {
-    const double margin = std::max(marginOf(pair.a), marginOf(pair.b));
-    if (margin >= 0.0)
-      impl_->addPair(pair, margin);
-  }
-  return impl_->contacts;
+  for (size_t i = 0; i < infos.size(); ++i)
+    impl_->bounds[i].margin = infos[i].body < 0 ? -1.0 : body_margins[infos[i].body];
+  return impl_->detect();
+}
+
+void CollisionWorld::setBroadPhase(BroadPhaseKind kind)
+{
+  impl_->broad_phase.setKind(kind);
 }
 
 std::vector<double> CollisionWorld::meshReach(int body) const

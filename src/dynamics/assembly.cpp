@@ -107,25 +107,38 @@ void StepAssembly::makeGuess(const StepContext& context, Solution& guess, const 
   guess.lambda = answer->lambda;
 }
 
-void StepAssembly::assembleMass(bool with_implicit)
+/** The pattern of M: the trees', then the auxiliary columns' diagonal. */
+void StepAssembly::setMassPattern()
 {
   rows_m_.clear();
-  for (const Body& body : bodies_)
-    for (int i = 0; i < body.model.tree.nv; ++i)
-    {
-      for (const int column : mass_columns_[body.v_offset + i])
-      {
-        const int j = column - body.v_offset;
-        rows_m_.push(column, body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0));
-      }
-      rows_m_.endRow();
-    }
+  for (const std::vector<int>& columns : mass_columns_)
+  {
+    for (const int column : columns)
+      rows_m_.push(column, 0.0);
+    rows_m_.endRow();
+  }
   for (int column = velocities_; column < sink_.columns(); ++column)
   {
-    rows_m_.push(column, sink_.auxiliaryMass()[column - velocities_]);
+    rows_m_.push(column, 0.0);
     rows_m_.endRow();
   }
   rows_m_.copyTo(sink_.columns(), problem_.M);
+}
+
+void StepAssembly::assembleMass(bool with_implicit)
+{
+  if (problem_.M.rows() != sink_.columns())
+    setMassPattern();
+  double* value = problem_.M.valuePtr();
+  for (const Body& body : bodies_)
+    for (int i = 0; i < body.model.tree.nv; ++i)
+      for (const int column : mass_columns_[body.v_offset + i])
+      {
+        const int j = column - body.v_offset;
+        *value++ = body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0);
+      }
+  for (const double mass : sink_.auxiliaryMass())
+    *value++ = mass;
 }
 
 /** f of one body; false where its mass matrix is not positive definite. */
@@ -146,7 +159,8 @@ bool StepAssembly::assembleForces(const StepContext& context, int index)
   body.implicit = context.dt * body.model.damping;
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->addMomentum(context, index, momentum);
-  if (!factorizeMassMatrix(tree, body.implicit, body.middle))
+  // A free link has its motion without a factor, and asks for one when its bias is to be put in again.
+  if (!body.model.free_link && !factorizeMassMatrix(tree, body.implicit, body.middle))
     return false;
   predict(context, body);
   force_.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;

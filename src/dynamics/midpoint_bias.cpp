@@ -1,6 +1,7 @@
 // The bias at the midpoint of the step: first guess, rounds after the solve, what free links end with; see assembly.h.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
 #include "frictional_contact_sim/dynamics/free_link.h"
@@ -98,6 +99,8 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
   body.change = context.dt * (body.next_bias - body.bias);
   if (body.change.isZero(0.0))
     return 0.0;
+  if (body.model.free_link && !factorizeMassMatrix(tree, body.implicit, body.middle))
+    return std::numeric_limits<double>::quiet_NaN();
   solveMassMatrix(tree, body.middle, body.change);
   const double change = pointSpeed(body, body.change);
   if (change <= tolerance * body.speed_change)

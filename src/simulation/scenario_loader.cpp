@@ -331,6 +331,17 @@ void readContactLaw(const YamlReader& law, Scenario& scenario)
   scenario.contact_law = name == "gap" ? ContactLawForm::GAP : ContactLawForm::VELOCITY;
 }
 
+void readBroadPhase(const YamlReader& kind, Scenario& scenario)
+{
+  const std::string name = kind.text();
+  if (name == "fcl")
+    scenario.broad_phase = BroadPhaseKind::FCL;
+  else if (name == "list")
+    scenario.broad_phase = BroadPhaseKind::LIST;
+  else if (name != "auto")
+    kind.fail("found '" + name + "', expected auto, fcl or list");
+}
+
 void readFailure(const YamlReader& map, FailureOptions& failure)
 {
   map.expectMap({"policy", "fallback", "time_limit"});
@@ -363,7 +374,7 @@ void readGround(const YamlReader& map, Scenario& scenario)
 Scenario readScenario(const YamlReader& document)
 {
   document.expectMap({"time_step", "duration", "gravity", "solver", "materials", "ground", "bodies", "loops",
-                      "quasi_static", "contact_law", "failure"});
+                      "quasi_static", "contact_law", "failure", "broad_phase"});
   Scenario scenario;
   scenario.name = std::filesystem::path(document.file()).stem().string();
   if (document.has("time_step"))
@@ -390,6 +401,8 @@ Scenario readScenario(const YamlReader& document)
   readBodies(document.child("bodies"), scenario);
   if (document.has("contact_law"))
     readContactLaw(document.child("contact_law"), scenario);
+  if (document.has("broad_phase"))
+    readBroadPhase(document.child("broad_phase"), scenario);
   if (document.has("failure"))
     readFailure(document.child("failure"), scenario.failure);
   if (document.has("loops") && document.node()["loops"].size() > 0)

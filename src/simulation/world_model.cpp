@@ -251,6 +251,7 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
   const auto begin = std::chrono::steady_clock::now();
   auto world = std::make_shared<WorldModel>();
   world->scenario = scenario;
+  world->collision.setBroadPhase(scenario.broad_phase);
   for (const BodySpec& spec : scenario.bodies)
   {
     world->bodies.push_back(loadBody(spec, world->warnings));

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "frictional_contact_sim/collision/broad_phase_kind.h"
 #include "frictional_contact_sim/collision/contact_id.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
@@ -92,6 +93,9 @@ public:
   void setPoses(int body, const MultibodyData& data);
   /** @brief The same for one link. */
   void setLinkPose(int body, int link, const Eigen::Isometry3d& pose);
+
+  /** @brief Who looks for near pairs; the points are the same. Copies have it too. */
+  void setBroadPhase(BroadPhaseKind kind);
 
   /**
    * @brief Contact points with gap <= margin, ordered by (shape_a, shape_b, feature): deterministic. No allocation

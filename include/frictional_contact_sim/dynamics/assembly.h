@@ -91,6 +91,7 @@ private:
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
   double freeMiss(const StepContext& context, const Solution& solution, Body& body);
+  void setMassPattern();
   void assembleMass(bool with_implicit);
   LawScale scaleOf(const SparseRows& rows, int row, const RowUnit& unit, double base_speed) const;
   void setScales();

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "frictional_contact_sim/collision/broad_phase_kind.h"
 #include "frictional_contact_sim/dynamics/actuation.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
@@ -65,6 +66,7 @@ struct Scenario
   std::vector<BodySpec> bodies;
   FailureOptions failure;
   ContactLawForm contact_law = ContactLawForm::GAP;
+  BroadPhaseKind broad_phase = BroadPhaseKind::AUTO;  ///< changes the time of a step, nothing else
 };
 
 }  // namespace frictional_contact_sim
