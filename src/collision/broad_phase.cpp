@@ -132,10 +132,11 @@ void BroadPhase::fatten(int handle, const Bounds& bounds)
   boxes_[handle] = {bounds.center - reach - round_off, bounds.center + reach + round_off};
 }
 
-/// Of two shapes that have left, the later one is looked for by the earlier one.
+/// Of two shapes that have left, the later one of bounded_ is looked for by the earlier one.
 void BroadPhase::consider(int handle, int other, const PairRule& rule)
 {
-  if ((!has_left_[other] || handle < other) && overlap(boxes_[handle], boxes_[other]))
+  const bool is_earlier = rule.isImmobile(handle) == rule.isImmobile(other) ? handle < other : rule.isImmobile(other);
+  if ((!has_left_[other] || is_earlier) && overlap(boxes_[handle], boxes_[other]))
     keep(handle, other, rule);
 }
 
