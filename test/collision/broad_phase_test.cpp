@@ -124,6 +124,22 @@ TEST(BroadPhaseKindTest, AFewShapesInFreeFallAreFoundWhenTheyArrive)
   }
 }
 
+TEST(BroadPhaseKindTest, AMovingBodyFindsAFixedOneListedBeforeIt)
+{
+  for (const BroadPhaseKind kind : {BroadPhaseKind::LIST, BroadPhaseKind::FCL})
+  {
+    CollisionWorld world;
+    MultibodyModel table = freeBody({Box{Eigen::Vector3d(1.0, 1.0, 0.1)}}, "table");
+    table.joints.front().type = JointType::FIXED;
+    const int fixed = world.addBody(table);
+    const int moving = world.addBody(freeBody({Box{Eigen::Vector3d(0.1, 0.1, 0.1)}}, "box"));
+    world.setBroadPhase(kind);
+    world.setLinkPose(fixed, 0, Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.1)));
+    world.setLinkPose(moving, 0, Eigen::Isometry3d(Eigen::Translation3d(0.3, 0.2, 0.1)));
+    EXPECT_EQ(world.detect(1e-6).size(), 4u);
+  }
+}
+
 TEST(BroadPhaseKindTest, AMarginOfAFastBodyDoesNotReachThirdBodies)
 {
   CollisionWorld world;
