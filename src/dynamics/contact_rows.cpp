@@ -10,6 +10,7 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr double STICKING_SPEED = 1e-9;  ///< slower than this is at rest [m/s]
 
 ContactMode modeOf(const ContactRow& row, const Eigen::Vector3d& impulse, const Eigen::Vector3d& velocity,
@@ -149,7 +150,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const double old_normal = point.normal.dot(velocity);
   NormalShift shift;
   if (point.is_linearised)
-    shift.shift = point.row_gap / context.dt;
+    shift.shift = std::max(point.row_gap / context.dt, context.normal_law.recovery_speed > 0.0 ? -INFINITE : 0.0);
   else if (context.impact)
     shift = impactShift(point.gap, old_normal, material.restitution, context.dt);
   else

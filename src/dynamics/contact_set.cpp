@@ -229,9 +229,14 @@ bool ContactSet::canGoBack() const
   return rounds_ > 0 && !is_last_ && worst_ <= TRACE;
 }
 
-void ContactSet::goBack()
+void ContactSet::stopLooking()
 {
   is_last_ = true;
+}
+
+void ContactSet::goBack()
+{
+  stopLooking();
   points_.swap(last_points_);
 }
 
@@ -431,7 +436,8 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
     row.position = on_b;
   else
     row.position = 0.5 * (on_a + on_b);
-  row.gap = found.gap + row.normal.dot(on_a - on_b);
+  // An estimate, for reports; the pair was looked at, and is no deeper than this.
+  row.gap = std::max(found.gap + row.normal.dot(on_a - on_b), allowedGap(found.shape_a, found.shape_b));
   const double speed = normalSpeed(row, [this](int body) -> const Eigen::VectorXd& { return ahead_[body].v; });
   row.is_linearised = true;
   row.row_gap = missing / share - context.dt * speed;

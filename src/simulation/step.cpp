@@ -107,7 +107,8 @@ bool Simulator::Impl::canAskLess() const
 {
   const bool pushes = context.normal_law.recovery_speed > 0.0 &&
                       std::any_of(context.points->begin(), context.points->end(),
-                                  [](const ContactPoint& point) { return point.gap < 0.0; });
+                                  [](const ContactPoint& point)
+                                  { return (point.is_linearised ? point.row_gap : point.gap) < 0.0; });
   return pushes || contact_set.canGoBack();
 }
 
@@ -116,7 +117,10 @@ void Simulator::Impl::askLess()
   if (contact_set.canGoBack())
     contact_set.goBack();
   else
+  {
     context.normal_law.recovery_speed = 0.0;
+    contact_set.stopLooking();
+  }
 }
 
 /** Solves converged, but not the rows' own law. */

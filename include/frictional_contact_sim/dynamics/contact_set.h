@@ -70,6 +70,8 @@ public:
    * size) went through without them. Answers are not looked at again in this step.
    */
   void goBack();
+  /** @brief Answers are not looked at again in this step. */
+  void stopLooking();
   bool canGoBack() const;
 
   const std::vector<ContactPoint>& points() const { return points_; }
