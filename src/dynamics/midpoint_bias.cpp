@@ -12,7 +12,7 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr int MOST_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last
-constexpr double UNSETTLED = 1e3;  ///< times its threshold: what a bias may still miss after the most rounds
+constexpr double UNSETTLED = 1e-2;  ///< times the step's change of speed: what a bias may miss after the most rounds
 constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
 constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
 constexpr double SPEED_ROUND_OFF = 1e-14;  ///< relative to the speed itself
@@ -160,7 +160,7 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
 {
   const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
   const double worst = moveBias(context, solution, last);
-  if (worst == 0.0 || (last && worst < UNSETTLED))
+  if (worst == 0.0 || (last && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
   ++bias_rounds_;

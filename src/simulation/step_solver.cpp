@@ -16,6 +16,8 @@ constexpr double SHARE_OF_TOLERANCE = 0.5;  ///< of E: what other forces of the 
 /// Other ideas than the default portfolio's first, then methods that it has itself, for whoever chose another method.
 /// The order is a choice by kind of method; it is not measured yet.
 constexpr const char* FALLBACKS[] = {"interior_point", "cadoux_fixed_point", "ac_newton", "gauss_seidel"};
+/// Of the iterations, where the step can still ask less: an overlap that cannot be pushed out has no answer at all.
+constexpr int FIRST_TRY = 10;
 /// Of a fallback, in place of StoppingOptions::work_per_iteration where that is more: it succeeds soon or not at all.
 constexpr double FALLBACK_WORK = 10.0;
 
@@ -217,7 +219,15 @@ void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess,
     setNoAnswer(problem, SolverStatus::NUMERICAL_FAILURE, "forces or velocities have run away", result);
     return;
   }
-  run(helper_ != nullptr ? *helper_ : *method_, problem, &guess, result);
+  Solver& method = helper_ != nullptr ? *helper_ : *method_;
+  const int iterations = is_last_resort ? stopping_.max_iterations : stopping_.max_iterations / FIRST_TRY;
+  if (method.stopping().max_iterations != iterations)
+  {
+    StoppingOptions stopping = method.stopping();
+    stopping.max_iterations = iterations;
+    method.setStopping(stopping);
+  }
+  run(method, problem, &guess, result);
   if (is_last_resort && mayTryOthers(result))
     tryOthers(problem, result);
   // A step may take several solves: what it says is of all of them.
