@@ -282,7 +282,7 @@ void ContactRows::accept(const StepContext& context, const StepAnswer& answer)
     state.tangent_1 = row.tangent_1;
     state.tangent_2 = row.tangent_2;
     state.gap = point.gap;
-    state.row_gap = point.is_linearised ? point.row_gap : point.gap;
+    state.row_gap = context.dt * row.shift;
     state.friction = row.friction;
     state.restitution = row.restitution;
     state.impulse = r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2;

@@ -15,17 +15,10 @@ namespace
 {
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always known [m]
 constexpr double CLOSING_MARGIN = 2.0;  ///< times what the free motion closes of a gap: forces of other rows may add
-constexpr double OVERLAP = 1e-9;  ///< times the size: what may go through
-constexpr int STRICT_ROUNDS = 2;  ///< with every round after these more may: crossing edges converge slowly
 constexpr double LOOSER = 100.0;  ///< each of them
 constexpr double LOOSEST = 1e-5;
-constexpr double STILL = 1e-12;  ///< what moves less than this in a step closes no gap [m]
-constexpr double TOUCHING = 1e-12;  ///< a gap ahead that is zero [m]
-constexpr double NEAR = 1e-2;  ///< times the size: of points nearer than this the deepest gets a row first
-constexpr int EXTRA = 1 << 20;  ///< feature index of a second row for one pair of features, plus the round
 constexpr int MOST_ROUNDS = 10;
 constexpr double TRACE = 1e-4;  ///< times the size: left after the most rounds, it is the next step's to mend
-constexpr double UNSEEN = -1.0;  ///< margin of a pair that is not looked at
 
 /** Sum over the coordinates of a link of direction . (motion of the point), velocities from `v` (of the body). */
 double alongNormal(const Body& body, int link, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
@@ -85,14 +78,19 @@ double ContactSet::baseSpeed(const Body& body)
   double reach = 0.0;
   const Eigen::Vector3d origin = body.middle.link_pose.front().translation();
   for (size_t link = 0; link < body.middle.link_pose.size(); ++link)
-    reach =
-        std::max(reach, (body.middle.link_pose[link].translation() - origin).norm() + body.model.extents[link]);
+    reach = std::max(reach, (body.middle.link_pose[link].translation() - origin).norm() + body.model.extents[link]);
   return motion.linear.norm() + motion.angular.norm() * reach;
 }
 
-/** Of a relative to b along the normal, with moving bases; `velocities` gives the nv velocities of a body. */
-template <class Velocities>
-double ContactSet::normalSpeed(const ContactPoint& point, const Velocities& velocities) const
+const Eigen::VectorXd& ContactSet::velocities(Motion motion, int body) const
+{
+  if (motion == Motion::ANSWER)
+    return ahead_[body].v;
+  return motion == Motion::START ? bodies_[body].v_start : bodies_[body].v_free;
+}
+
+/** Of a relative to b along the normal, with moving bases. */
+double ContactSet::normalSpeed(const ContactPoint& point, Motion motion) const
 {
   double speed = 0.0;
   for (const int side : {0, 1})
@@ -101,7 +99,7 @@ double ContactSet::normalSpeed(const ContactPoint& point, const Velocities& velo
     if (shape.body < 0)
       continue;
     const Body& body = bodies_[shape.body];
-    double along = alongNormal(body, shape.link, point.position, point.normal, velocities(shape.body));
+    double along = alongNormal(body, shape.link, point.position, point.normal, velocities(motion, shape.body));
     if (body.model.base_motion.active)
       along += point.normal.dot(baseVelocity(bodies_, shape, point.position));
     speed += side == 0 ? along : -along;
@@ -113,12 +111,8 @@ bool ContactSet::mayClose(const StepContext& context, const ContactPoint& point)
 {
   if (point.gap <= CONTACT_GAP || context.normal_law.form == ContactLawForm::VELOCITY || carriedBefore(point.id))
     return true;
-  const double start =
-      normalSpeed(point, [this](int body) -> const Eigen::VectorXd& { return bodies_[body].v_start; });
-  const double free =
-      context.impact ?
-          start :
-          normalSpeed(point, [this](int body) -> const Eigen::VectorXd& { return bodies_[body].v_free; });
+  const double start = normalSpeed(point, Motion::START);
+  const double free = context.impact ? start : normalSpeed(point, Motion::FREE);
   return point.gap <= -CLOSING_MARGIN * context.dt * std::min(start, free);
 }
 
@@ -270,8 +264,7 @@ bool ContactSet::addClosing(const StepContext& context)
   {
     if (candidate.use != Use::IDLE)
       continue;
-    const double speed =
-        normalSpeed(candidate.point, [this](int body) -> const Eigen::VectorXd& { return ahead_[body].v; });
+    const double speed = normalSpeed(candidate.point, Motion::ANSWER);
     const double missing = candidate.point.gap + time * speed;
     if (missing >= -tolerance() * sizeOf(candidate.point))
       continue;
@@ -280,186 +273,6 @@ bool ContactSet::addClosing(const StepContext& context)
     added = true;
   }
   return added;
-}
-
-void ContactSet::moveAhead(const StepContext& context)
-{
-  for (size_t b = 0; b < bodies_.size(); ++b)
-  {
-    const Body& body = bodies_[b];
-    Ahead& ahead = ahead_[b];
-    margins_ahead_[b] = context.dt * speeds_[b] > STILL ? TOUCHING : UNSEEN;
-    if (body.model.tree.nv == 0)
-      continue;
-    if (context.impact)
-    {
-      moveHalfStep(body, body.state.q, ahead.v, context.dt, ahead.q);
-      continue;
-    }
-    moveStep(body, ahead.v, context.dt, ahead.q_end, ahead.v_end);
-    moveHalfStep(body, ahead.q_end, ahead.v_end, context.dt, ahead.q);
-  }
-}
-
-void ContactSet::setPosesAhead(const StepContext& context, bool at_end)
-{
-  const double time = (at_end ? 1.0 : context.impact ? 0.5 : 1.5) * context.dt;
-  for (size_t b = 0; b < bodies_.size(); ++b)
-  {
-    Ahead& ahead = ahead_[b];
-    ahead.data.base_pose = basePose(bodies_[b], time);
-    forwardKinematics(bodies_[b].model.tree, at_end ? ahead.q_end : ahead.q, ahead.data);
-    world_.setPoses(static_cast<int>(b), ahead.data);
-  }
-}
-
-/** How deep a pair may be: as deep as it is at q_m. */
-double ContactSet::allowedGap(int shape_a, int shape_b) const
-{
-  double deepest = 0.0;
-  const auto isBefore = [&](const Candidate& candidate)
-  {
-    return candidate.point.shape_a != shape_a ? candidate.point.shape_a < shape_a : candidate.point.shape_b < shape_b;
-  };
-  const auto first = std::partition_point(candidates_.begin(), candidates_.end(), isBefore);
-  for (auto candidate = first; candidate != candidates_.end(); ++candidate)
-  {
-    if (candidate->point.shape_a != shape_a || candidate->point.shape_b != shape_b)
-      break;
-    if (candidate->use != Use::LINEARISED)
-      deepest = std::min(deepest, candidate->point.gap);
-  }
-  return deepest;
-}
-
-/** What overlaps at the poses set, by pair, the deepest first. */
-void ContactSet::findOverlaps()
-{
-  touching_pairs_.clear();
-  overlaps_.clear();
-  for (const ContactPoint& point : world_.detect(margins_ahead_))
-  {
-    if (touching_pairs_.empty() || touching_pairs_.back() != point.id.shapes)
-      touching_pairs_.push_back(point.id.shapes);
-    const double most = tolerance() * sizeOf(point);
-    if (point.gap >= -most)
-      continue;
-    const double missing = point.gap - allowedGap(point.shape_a, point.shape_b);
-    if (missing < -most)
-      overlaps_.push_back({point, missing});
-  }
-  std::stable_sort(overlaps_.begin(), overlaps_.end(),
-                   [](const Overlap& a, const Overlap& b)
-                   {
-                     return a.point.id.shapes != b.point.id.shapes ? a.point.id.shapes < b.point.id.shapes
-                                                                   : a.missing < b.missing;
-                   });
-}
-
-/** Rows for what overlaps at the poses set. @param share of the step from q_m to them */
-bool ContactSet::mend(const StepContext& context, double share)
-{
-  findOverlaps();
-  bool mended = false;
-  size_t first = 0;  // of the pair
-  for (size_t i = 0; i < overlaps_.size(); ++i)
-  {
-    const Overlap& overlap = overlaps_[i];
-    if (overlap.point.id.shapes != overlaps_[first].point.id.shapes)
-      first = i;
-    const double size = sizeOf(overlap.point);
-    Candidate* candidate = known(overlap.point.id);
-    if (candidate != nullptr && (candidate->use == Use::HOPELESS || candidate->round == rounds_ + 1))
-      continue;
-    worst_ = std::max(worst_, -overlap.missing / size);
-    const bool has_row = candidate != nullptr && (candidate->use == Use::ROW || candidate->use == Use::LINEARISED);
-    const auto isNear = [&](const Overlap& other)
-    { return (other.point.position - overlap.point.position).norm() < NEAR * size; };
-    if (!has_row && std::any_of(overlaps_.begin() + static_cast<std::ptrdiff_t>(first),
-                                overlaps_.begin() + static_cast<std::ptrdiff_t>(i), isNear))
-      continue;  // a deeper one beside it speaks for it
-    if (candidate == nullptr)
-    {
-      addCandidate(overlap.point, Use::IDLE);
-      sortCandidates();
-      candidate = known(overlap.point.id);
-    }
-    candidate->round = rounds_ + 1;
-    mended = true;
-    if (candidate->use == Use::DROPPED && pairs_(overlap.point.shape_a, overlap.point.shape_b).restitution > 0.0)
-    {
-      candidate->use = Use::ROW;
-      candidate->is_kept = true;
-      continue;
-    }
-    const ContactPoint row = linearised(context, overlap.point, overlap.missing, share);
-    if (candidate->use == Use::LINEARISED && (row.position - candidate->point.position).norm() > NEAR * size)
-    {
-      // The crossing of two nearly parallel edges runs along them: it needs rows at both places.
-      Candidate other = *candidate;
-      other.point.id = makeContactId(row.shape_a, row.shape_b, makeFeature(FeatureKind::CURVE, EXTRA + rounds_),
-                                     featureB(row.id));
-      candidates_.push_back(other);
-      sortCandidates();
-      candidate = known(row.id);
-    }
-    candidate->point = row;
-    candidate->use = Use::LINEARISED;
-  }
-  return mended;
-}
-
-/** A point found ahead as a row at q_m; see the head of contact_set.h. */
-ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoint& found, double missing,
-                                    double share) const
-{
-  ContactPoint row = found;
-  Eigen::Isometry3d back[2];  // from the pose ahead to q_m
-  for (const int side : {0, 1})
-  {
-    const ShapeInfo& shape = world_.shape(side == 0 ? found.shape_a : found.shape_b);
-    back[side] = shape.body < 0 ? Eigen::Isometry3d::Identity() :
-                                  bodies_[shape.body].middle.link_pose[shape.link] *
-                                      ahead_[shape.body].data.link_pose[shape.link].inverse(Eigen::Isometry);
-  }
-  const FeatureKind kind_a = kindOf(featureA(found.id));
-  const FeatureKind kind_b = kindOf(featureB(found.id));
-  if (kind_b == FeatureKind::FACE)
-    row.normal = back[1].linear() * found.normal;
-  else if (kind_a == FeatureKind::FACE)
-    row.normal = back[0].linear() * found.normal;
-  const Eigen::Vector3d on_a = back[0] * found.position;
-  const Eigen::Vector3d on_b = back[1] * found.position;
-  if (kind_a == FeatureKind::VERTEX && kind_b != FeatureKind::VERTEX)
-    row.position = on_a;
-  else if (kind_b == FeatureKind::VERTEX && kind_a != FeatureKind::VERTEX)
-    row.position = on_b;
-  else
-    row.position = 0.5 * (on_a + on_b);
-  // An estimate, for reports; the pair was looked at, and is no deeper than this.
-  row.gap = std::max(found.gap + row.normal.dot(on_a - on_b), allowedGap(found.shape_a, found.shape_b));
-  const double speed = normalSpeed(row, [this](int body) -> const Eigen::VectorXd& { return ahead_[body].v; });
-  row.is_linearised = true;
-  row.row_gap = missing / share - context.dt * speed;
-  return row;
-}
-
-/** Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. */
-bool ContactSet::dropGhosts()
-{
-  if (ghosts_tried_ || rounds_ > STRICT_ROUNDS)
-    return false;
-  ghosts_tried_ = true;
-  bool dropped = false;
-  for (Candidate& candidate : candidates_)
-    if (candidate.use == Use::ROW && !candidate.is_kept && candidate.impulse > 0.0 &&
-        candidate.point.gap > OVERLAP * sizeOf(candidate.point) && !carriedBefore(candidate.point.id) &&
-        !std::binary_search(touching_pairs_.begin(), touching_pairs_.end(), candidate.point.id.shapes))
-    {
-      candidate.use = Use::DROPPED;
-      dropped = true;
-    }
-  return dropped;
 }
 
 }  // namespace frictional_contact_sim

@@ -91,8 +91,7 @@ Again LimitRows::lookAhead(const StepContext& context, const Solution& solution)
     if (side.has_row)
       continue;
     const Body& body = bodies_[side.body];
-    const double velocity =
-        sign(side.side) * solution.v[body.v_offset + body.model.tree.joints[side.joint].v_index];
+    const double velocity = sign(side.side) * solution.v[body.v_offset + body.model.tree.joints[side.joint].v_index];
     if (gap(context, side) + time * velocity >= -OVERLAP)
       continue;
     side.needed = true;

@@ -31,8 +31,7 @@ JointMemory::JointMemory(const char* name, int impulses_a_joint, const std::vect
 }
 
 std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies, const CollisionWorld& world,
-                                                       const PairTable& pairs, RowState& state,
-                                                       ContactSet* contacts)
+                                                       const PairTable& pairs, RowState& state, ContactSet* contacts)
 {
   std::unique_ptr<CreepRows> creep;
   if (pairs.hasCreep())

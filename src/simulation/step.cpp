@@ -105,10 +105,10 @@ void Simulator::Impl::solveStep()
  */
 bool Simulator::Impl::canAskLess() const
 {
-  const bool pushes = context.normal_law.recovery_speed > 0.0 &&
-                      std::any_of(context.points->begin(), context.points->end(),
-                                  [](const ContactPoint& point)
-                                  { return (point.is_linearised ? point.row_gap : point.gap) < 0.0; });
+  const bool pushes =
+      context.normal_law.recovery_speed > 0.0 &&
+      std::any_of(context.points->begin(), context.points->end(),
+                  [](const ContactPoint& point) { return (point.is_linearised ? point.row_gap : point.gap) < 0.0; });
   return pushes || contact_set.canGoBack();
 }
 

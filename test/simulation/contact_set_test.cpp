@@ -135,8 +135,8 @@ TEST(ContactSetTest, AWheelRollsOverTheSeamOfTwoBoxesAsIfThereWereNone)
       scene.ground.reset();
       for (const double side : {-1.0, 1.0})
       {
-        BodySpec& box = addBody(scene, side < 0.0 ? "left" : "right", boxUrdf({4.0, 1.0, 0.2}, 1.0),
-                                poseAt(2.0 * side, 0.0, -0.1));
+        BodySpec& box =
+            addBody(scene, side < 0.0 ? "left" : "right", boxUrdf({4.0, 1.0, 0.2}, 1.0), poseAt(2.0 * side, 0.0, -0.1));
         box.base = BaseType::FIXED;
       }
       BodySpec& wheel = addBody(scene, "wheel", sphereUrdf(0.1, 1.0), poseAt(-0.15, 0.0, 0.1));

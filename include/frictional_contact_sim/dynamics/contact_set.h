@@ -3,8 +3,8 @@
  * @file contact_set.h
  * @brief Which contact points a step has rows for: chosen from its free motion, then mended by looking at its answers.
  *
- * The law is gap >= 0 for every point of a body, not for chosen ones. A step starts with the points that its free motion
- * could close. Every answer is then looked at with the true geometry at both poses it leads to,
+ * The law is gap >= 0 for every point of a body, not for chosen ones. A step starts with the points that its free
+ * motion could close. Every answer is then looked at with the true geometry at both poses it leads to,
  *
  *     q_k+1 = q_k (+) dt (v_k + v_k+1)/2      and the next midpoint      q_n = q_k+1 (+) dt/2 v_k+1
  *
@@ -25,7 +25,8 @@
  *
  * What may go through is 1e-9 of the size of the smaller shape, a hundred times more in each of two rounds after the
  * second (crossing edges converge by a factor of 4 a round, no more); after
- * 10 rounds a trace of 1e-4 of the size is left to the next step, more than that is a failed step. Source: ../shared/DESIGN.md, "Nothing goes through".
+ * 10 rounds a trace of 1e-4 of the size is left to the next step, more than that is a failed step. Source:
+ * ../shared/DESIGN.md, "Nothing goes through".
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -66,8 +67,8 @@ public:
   Look lookAgain(const StepContext& context, const Eigen::VectorXd& v, const std::vector<double>& impulses);
 
   /**
-   * @brief The points before the last change: where the solve with the new ones has failed and only a trace (1e-4 of the
-   * size) went through without them. Answers are not looked at again in this step.
+   * @brief The points before the last change: where the solve with the new ones has failed and only a trace (1e-4 of
+   * the size) went through without them. Answers are not looked at again in this step.
    */
   void goBack();
   /** @brief Answers are not looked at again in this step. */
@@ -112,9 +113,19 @@ private:
     double missing;  ///< gap minus what is allowed [m] < 0
   };
 
+  enum class Motion
+  {
+    START,  ///< v_start
+    FREE,  ///< v_free
+    ANSWER
+  };
+  static constexpr double OVERLAP = 1e-9;  ///< times the size: what may go through
+  static constexpr int STRICT_ROUNDS = 2;  ///< with every round after these more may: crossing edges converge slowly
+  static constexpr double STILL = 1e-12;  ///< what moves less than this in a step closes no gap [m]
+
   static double baseSpeed(const Body& body);
-  template <class Velocities>
-  double normalSpeed(const ContactPoint& point, const Velocities& velocities) const;
+  const Eigen::VectorXd& velocities(Motion motion, int body) const;
+  double normalSpeed(const ContactPoint& point, Motion motion) const;
   bool mayClose(const StepContext& context, const ContactPoint& point) const;
   bool carriedBefore(const ContactId& id) const;
   double tolerance() const;

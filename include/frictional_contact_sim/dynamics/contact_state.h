@@ -29,7 +29,8 @@ struct ContactState
   Eigen::Vector3d tangent_1 = Eigen::Vector3d::UnitX();
   Eigen::Vector3d tangent_2 = Eigen::Vector3d::UnitY();
   double gap = 0.0;  ///< at the midpoint of the step [m]
-  /// What the normal row kept: u_N >= -row_gap/dt. The gap itself but for rows linearised ahead (contact_set.h) [m]
+  /// What the normal row kept: u_N >= -row_gap/dt. The gap itself but for overlaps, restitution and rows linearised
+  /// ahead (contact_set.h) [m]
   double row_gap = 0.0;
   double friction = 0.0;
   double restitution = 0.0;
