@@ -155,7 +155,7 @@ ContactSet::Candidate* ContactSet::known(const ContactId& id)
 const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
 {
   rounds_ = 0;
-  ghosts_tried_ = is_last_ = false;
+  ghosts_tried_ = is_last_ = is_lenient_ = false;
   carried_.clear();
   for (const ContactState& contact : last_)
     if (!contact.impulse.isZero(0.0))
@@ -211,7 +211,7 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
   if (!changed)
     return Look::CONTENT;
   if (rounds_ == MOST_ROUNDS)
-    return worst_ > TRACE ? Look::GIVEN_UP : Look::CONTENT;
+    return worst_ > TRACE && !is_lenient_ ? Look::GIVEN_UP : Look::CONTENT;
   ++rounds_;
   last_points_.swap(points_);
   takePoints();
@@ -223,14 +223,14 @@ bool ContactSet::canGoBack() const
   return rounds_ > 0 && !is_last_ && worst_ <= TRACE;
 }
 
-void ContactSet::stopLooking()
+void ContactSet::beLenient()
 {
-  is_last_ = true;
+  is_lenient_ = true;
 }
 
 void ContactSet::goBack()
 {
-  stopLooking();
+  is_last_ = true;
   points_.swap(last_points_);
 }
 

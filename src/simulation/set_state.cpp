@@ -136,7 +136,7 @@ void Simulator::Impl::solveImpact()
       assembly.assembleRows(context);
     assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
     assembly.assembleProblem(context);
-    solver.solve(assembly.problem(), guess, true, result);
+    solver.solve(assembly.problem(), guess, true, false, result);
     again = result.status == SolverStatus::CONVERGED ? assembly.again(context, result.solution, true) : Again::NO;
   } while (again == Again::FROM_ANSWER);
   if (again == Again::NEVER)

@@ -26,6 +26,7 @@ struct Simulator::Impl
   void finishStep();
 
   bool canAskLess() const;
+  bool pushesOut() const;
   void askLess();
   void setUnsatisfied();
   void fail(SolverStatus status, const std::string& message);

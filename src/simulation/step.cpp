@@ -11,6 +11,7 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double GAP_ROUND_OFF = 1e-14;  ///< a resting contact is no deeper [m]
 /// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
@@ -81,7 +82,7 @@ void Simulator::Impl::solveStep()
       assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
       assembly.assembleProblem(context);
     }
-    solver.solve(assembly.problem(), guess, !canAskLess(), result);
+    solver.solve(assembly.problem(), guess, !canAskLess(), pushesOut(), result);
     again = Again::NO;
     failed_rounds += result.status != SolverStatus::CONVERGED;
     if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
@@ -105,22 +106,28 @@ void Simulator::Impl::solveStep()
  */
 bool Simulator::Impl::canAskLess() const
 {
-  const bool pushes =
-      context.normal_law.recovery_speed > 0.0 &&
-      std::any_of(context.points->begin(), context.points->end(),
-                  [](const ContactPoint& point) { return (point.is_linearised ? point.row_gap : point.gap) < 0.0; });
-  return pushes || contact_set.canGoBack();
+  return pushesOut() || contact_set.canGoBack();
+}
+
+/** Whether a row asks for a separation, not for round-off only. */
+bool Simulator::Impl::pushesOut() const
+{
+  return context.normal_law.recovery_speed > 0.0 &&
+         std::any_of(
+             context.points->begin(), context.points->end(),
+             [](const ContactPoint& point)
+             { return (point.is_linearised ? point.row_gap : point.gap) < -GAP_ROUND_OFF; });
 }
 
 void Simulator::Impl::askLess()
 {
-  if (contact_set.canGoBack())
-    contact_set.goBack();
-  else
+  if (pushesOut())
   {
     context.normal_law.recovery_speed = 0.0;
-    contact_set.stopLooking();
+    contact_set.beLenient();
   }
+  else
+    contact_set.goBack();
 }
 
 /** Solves converged, but not the rows' own law. */

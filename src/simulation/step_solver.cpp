@@ -16,7 +16,8 @@ constexpr double SHARE_OF_TOLERANCE = 0.5;  ///< of E: what other forces of the 
 /// Other ideas than the default portfolio's first, then methods that it has itself, for whoever chose another method.
 /// The order is a choice by kind of method; it is not measured yet.
 constexpr const char* FALLBACKS[] = {"interior_point", "cadoux_fixed_point", "ac_newton", "gauss_seidel"};
-/// Of the iterations, where the step can still ask less: an overlap that cannot be pushed out has no answer at all.
+/// Share of the iterations where overlaps are pushed out and need not be: an overlap that cannot be pushed out has no
+/// answer at all.
 constexpr int FIRST_TRY = 10;
 /// Of a fallback, in place of StoppingOptions::work_per_iteration where that is more: it succeeds soon or not at all.
 constexpr double FALLBACK_WORK = 10.0;
@@ -210,7 +211,7 @@ void StepSolver::tryOthers(const IncrementalProblem& problem, SolverResult& resu
   result.seconds = seconds;
 }
 
-void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort,
+void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort, bool is_doubtful,
                        SolverResult& result)
 {
   // A state that has run away overflows here; it must not reach the solver as a NaN.
@@ -220,7 +221,7 @@ void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess,
     return;
   }
   Solver& method = helper_ != nullptr ? *helper_ : *method_;
-  const int iterations = is_last_resort ? stopping_.max_iterations : stopping_.max_iterations / FIRST_TRY;
+  const int iterations = is_doubtful ? stopping_.max_iterations / FIRST_TRY : stopping_.max_iterations;
   if (method.stopping().max_iterations != iterations)
   {
     StoppingOptions stopping = method.stopping();

@@ -31,8 +31,11 @@ public:
   /**
    * Nothing is thrown. CONVERGED with residual and energy within their bounds, or the best iterate of all methods tried
    * and why it is none.
+   * @param is_last_resort other methods are tried where the first has no answer
+   * @param is_doubtful there may be no answer: a tenth of the iterations
    */
-  void solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort, SolverResult& result);
+  void solve(const IncrementalProblem& problem, const Solution& guess, bool is_last_resort, bool is_doubtful,
+             SolverResult& result);
   /** Of a CONVERGED answer to the problem solved last: the impulses that its loads ask for (solver/least_norm.h). */
   void takeLeastNorm(const IncrementalProblem& problem, SolverResult& result);
 

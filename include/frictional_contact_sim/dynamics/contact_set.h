@@ -71,8 +71,8 @@ public:
    * the size) went through without them. Answers are not looked at again in this step.
    */
   void goBack();
-  /** @brief Answers are not looked at again in this step. */
-  void stopLooking();
+  /** @brief What goes through after the most rounds of this step is left: overlaps are not pushed out in it. */
+  void beLenient();
   bool canGoBack() const;
 
   const std::vector<ContactPoint>& points() const { return points_; }
@@ -161,6 +161,7 @@ private:
   std::vector<Ahead> ahead_;
   int rounds_ = 0;
   bool ghosts_tried_ = false;
+  bool is_lenient_ = false;
   bool is_last_ = false;  ///< answers are no longer looked at
   double worst_ = 0.0;  ///< of the last look: deepest that is not allowed, in units of its size
 };
