@@ -31,9 +31,9 @@ inline const std::vector<KnownSeeds>& knownSeeds()
       {"failed", "E of 1e-8 to 1e-6 on hundreds of rows, or speeds that have run away", {131, 234, 253, 271, 278, 279}},
       {"penetration",
        "what ten rounds leave (a trace of 1e-4 of the size at most, contact_set.h), or rows given up for a solve",
-       {23, 103, 194, 206, 238, 310, 316}},
+       {23, 103, 194, 206, 238, 261, 310, 316}},
       {"gap", "fast light links: not traced", {207, 263, 271}},
-      {"friction", "1e-11 J of 1e-3 N s, not traced", {207, 271}},
+      {"friction", "1e-11 J of 1e-3 N s, not traced", {207, 263, 271}},
       {"rise", "the same as balance", {263, 271, 278}},
   };
   return table;
