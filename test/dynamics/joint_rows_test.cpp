@@ -136,8 +136,10 @@ TEST(LimitRowsTest, ImpulsesAreKeptByJointAndSideAndForgottenWithTheirRows)
 TEST(LimitRowsTest, ItsWorkIsDissipatedInTheJoint)
 {
   RowBench bench(chainUrdf(), BaseType::AUTO, make<LimitRows>);
+  bench.body().state.q[B - 1] = -0.0035;  // half a milliradian before its lower limit
   bench.body().state.v[B - 1] = -0.4;
   bench.assemble();
+  ASSERT_EQ(bench.problem().rows(), 1);
   Solution solution = bench.blank();
   solution.v[B - 1] = 0.2;
   solution.r[0] = 2.0;
