@@ -69,7 +69,8 @@ void LimitRows::addJointRows(const StepContext& context, int body_index, int joi
       continue;
     const NormalShift shift = context.impact ? impactShift(gap_now, velocity, 0.0, context.dt)
                                              : normalShift(context.normal_law, gap_now, velocity, 0.0, context.dt);
-    if (!shift.active)
+    side.has_row = shift.active;
+    if (!side.has_row)
       continue;
     if (shift.closing)
       sink.noteClosing();
