@@ -1,6 +1,7 @@
 // Contact sets: an answer looked at with the true geometry at the poses it leads to.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/dynamics/contact_set.h"
 #include "frictional_contact_sim/dynamics/row_source.h"
@@ -176,21 +177,41 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
   return row;
 }
 
-/** Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. */
-bool ContactSet::dropGhosts()
+/**
+ * Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. A suspect's linear gap
+ * there is zero, its true one c: with the velocities at the start of the step it would be gap_m + dt u + c, and twice c
+ * allows for what the other rows do.
+ */
+bool ContactSet::dropGhosts(const StepContext& context)
 {
   if (ghosts_tried_ || rounds_ > STRICT_ROUNDS)
     return false;
   ghosts_tried_ = true;
+  const auto isSuspect = [&](const Candidate& candidate)
+  {
+    return candidate.use == Use::ROW && !candidate.is_kept && candidate.impulse > 0.0 &&
+           candidate.point.gap > OVERLAP * sizeOf(candidate.point) && !carriedBefore(candidate.point.id) &&
+           !std::binary_search(touching_pairs_.begin(), touching_pairs_.end(), candidate.point.id.shapes);
+  };
+  if (std::none_of(candidates_.begin(), candidates_.end(), isSuspect))
+    return false;
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    margins_ahead_[b] = std::max(margins_ahead_[b], margins_ahead_[b] < 0.0 ? UNSEEN : context.dt * speeds_[b]);
+  const std::vector<ContactPoint>& ahead = world_.detect(margins_ahead_);
   bool dropped = false;
   for (Candidate& candidate : candidates_)
-    if (candidate.use == Use::ROW && !candidate.is_kept && candidate.impulse > 0.0 &&
-        candidate.point.gap > OVERLAP * sizeOf(candidate.point) && !carriedBefore(candidate.point.id) &&
-        !std::binary_search(touching_pairs_.begin(), touching_pairs_.end(), candidate.point.id.shapes))
-    {
-      candidate.use = Use::DROPPED;
-      dropped = true;
-    }
+  {
+    if (!isSuspect(candidate))
+      continue;
+    double gap = std::numeric_limits<double>::infinity();
+    for (const ContactPoint& point : ahead)
+      if (point.id.shapes == candidate.point.id.shapes)
+        gap = std::min(gap, point.gap);
+    if (candidate.point.gap + context.dt * normalSpeed(candidate.point, Motion::START) + 2.0 * gap < 0.0)
+      continue;
+    candidate.use = Use::DROPPED;
+    dropped = true;
+  }
   return dropped;
 }
 

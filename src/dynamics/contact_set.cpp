@@ -206,7 +206,7 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
     setPosesAhead(context, false);
     changed = mend(context, context.impact ? 0.5 : 1.0) || changed;
     if (!changed && !context.impact)
-      changed = dropGhosts();
+      changed = dropGhosts(context);
   }
   if (!changed)
     return Look::CONTENT;

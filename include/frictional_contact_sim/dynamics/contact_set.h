@@ -20,8 +20,8 @@
  *    allowed is 0, or how deep the pair was at q_m already;
  *  - a *ghost* is a row without which the step, solved again, still keeps every gap at both poses (a wheel that rolls
  *    over the seam of two coplanar boxes meets one): it carries nothing. Looked for once among points that carry an
- *    impulse, had a gap at q_m, carried none in the last step and do not touch at q_n. One that is then violated
- *    comes back, linearised (with restitution: as it was), and stays.
+ *    impulse, had a gap at q_m, carried none in the last step and do not touch at q_n, where the way past looks open.
+ * One that is then violated comes back, linearised (with restitution: as it was), and stays.
  *
  * What may go through is 1e-9 of the size of the smaller shape, a hundred times more in each of two rounds after the
  * second (crossing edges converge by a factor of 4 a round, no more); after
@@ -143,7 +143,7 @@ private:
   void findOverlaps();
   bool mend(const StepContext& context, double share);
   ContactPoint linearised(const StepContext& context, const ContactPoint& found, double missing, double share) const;
-  bool dropGhosts();
+  bool dropGhosts(const StepContext& context);
 
   std::vector<Body>& bodies_;
   CollisionWorld& world_;
