@@ -21,6 +21,7 @@ struct KnownFault
 inline const std::vector<KnownFault>& knownFaults()
 {
   static const std::vector<KnownFault> table = {
+      {"WhileItFalls/boxes12", "failed", "no method reaches 1e-8 of g dt in its budget (E is some 1e-7)"},
       {"WhileItFalls/pyramid5", "failed", "the bias does not settle in five rounds while boxes of the pyramid slide"},
   };
   return table;
