@@ -239,13 +239,6 @@ std::vector<int> numbersOf(size_t points, const HullSurface& surface)
 /// Slivers have no normal of their own: the best one around an edge of theirs is as good as any.
 void repairNormals(double size, Polyhedron& hull)
 {
-  std::vector<std::array<int, 2>> faces_at(hull.edges.size(), {-1, -1});
-  for (size_t f = 0; f < hull.faces.size(); ++f)
-    for (int k = 0; k < hull.faces[f].size; ++k)
-    {
-      std::array<int, 2>& pair = faces_at[hull.face_edges[hull.faces[f].first + k]];
-      pair[pair[0] < 0 ? 0 : 1] = static_cast<int>(f);
-    }
   const std::vector<Polyhedron::Face> before = hull.faces;
   for (size_t f = 0; f < before.size(); ++f)
   {
@@ -255,7 +248,7 @@ void repairNormals(double size, Polyhedron& hull)
     const Polyhedron::Face* best = nullptr;
     for (int k = 0; k < face.size; ++k)
     {
-      const std::array<int, 2>& pair = faces_at[hull.face_edges[face.first + k]];
+      const auto& pair = hull.edges[hull.face_edges[face.first + k]].face;
       const Polyhedron::Face& other = before[pair[0] == static_cast<int>(f) ? pair[1] : pair[0]];
       if (best == nullptr || other.area > best->area)
         best = &other;

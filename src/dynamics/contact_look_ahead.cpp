@@ -112,11 +112,7 @@ bool ContactSet::mend(const StepContext& context, double share)
                                 overlaps_.begin() + static_cast<std::ptrdiff_t>(i), isNear))
       continue;  // a deeper one beside it speaks for it
     if (candidate == nullptr)
-    {
-      addCandidate(overlap.point, Use::IDLE);
-      sortCandidates();
-      candidate = known(overlap.point.id);
-    }
+      candidate = &insert({overlap.point});
     candidate->round = rounds_ + 1;
     mended = true;
     if (candidate->use == Use::DROPPED && pairs_(overlap.point.shape_a, overlap.point.shape_b).restitution > 0.0)
@@ -132,8 +128,7 @@ bool ContactSet::mend(const StepContext& context, double share)
       Candidate other = *candidate;
       other.point.id =
           makeContactId(row.shape_a, row.shape_b, makeFeature(FeatureKind::CURVE, EXTRA + rounds_), featureB(row.id));
-      candidates_.push_back(other);
-      sortCandidates();
+      insert(other);
       candidate = known(row.id);
     }
     candidate->point = row;
@@ -196,7 +191,8 @@ bool ContactSet::dropGhosts(const StepContext& context)
   if (std::none_of(candidates_.begin(), candidates_.end(), isSuspect))
     return false;
   for (size_t b = 0; b < bodies_.size(); ++b)
-    margins_ahead_[b] = std::max(margins_ahead_[b], margins_ahead_[b] < 0.0 ? UNSEEN : context.dt * speeds_[b]);
+    if (margins_ahead_[b] >= 0.0)
+      margins_ahead_[b] = std::max(margins_ahead_[b], context.dt * speeds_[b]);
   const std::vector<ContactPoint>& ahead = world_.detect(margins_ahead_);
   bool dropped = false;
   for (Candidate& candidate : candidates_)

@@ -10,7 +10,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr double STICKING_SPEED = 1e-9;  ///< slower than this is at rest [m/s]
 
 ContactMode modeOf(const ContactRow& row, const Eigen::Vector3d& impulse, const Eigen::Vector3d& velocity,
@@ -149,8 +148,10 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
   NormalShift shift;
-  if (point.is_linearised)
-    shift.shift = std::max(point.row_gap / context.dt, context.normal_law.recovery_speed > 0.0 ? -INFINITE : 0.0);
+  if (point.is_linearised && context.normal_law.recovery_speed > 0.0)
+    shift.shift = point.row_gap / context.dt;
+  else if (point.is_linearised)  // asks for no separation either
+    shift.shift = std::max(point.row_gap, 0.0) / context.dt;
   else if (context.impact)
     shift = impactShift(point.gap, old_normal, material.restitution, context.dt);
   else

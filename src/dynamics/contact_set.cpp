@@ -2,20 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "frictional_contact_sim/collision/convex_shape.h"
 #include "frictional_contact_sim/dynamics/contact_rows.h"
 #include "frictional_contact_sim/dynamics/row_source.h"
-#include "frictional_contact_sim/model/kinematics.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always known [m]
-constexpr double CLOSING_MARGIN = 2.0;  ///< times what the free motion closes of a gap: forces of other rows may add
-constexpr double LOOSER = 100.0;  ///< each of them
+constexpr double LOOSER = 100.0;  ///< so many times more may go through with each round after the strict ones
 constexpr double LOOSEST = 1e-5;
 constexpr int MOST_ROUNDS = 10;
 constexpr double TRACE = 1e-4;  ///< times the size: left after the most rounds, it is the next step's to mend
@@ -125,16 +122,19 @@ void ContactSet::detectAtMiddle(const StepContext& context)
     world_.setPoses(static_cast<int>(b), bodies_[b].middle);
   }
   for (const ContactPoint& point : world_.detect(margins_))
-    addCandidate(point, Use::IDLE);
+    candidates_.push_back({point});
   sortCandidates();
 }
 
-/** At the end of the list; of two with one id sortCandidates keeps the first. */
-void ContactSet::addCandidate(const ContactPoint& point, Use use)
+/** At its place; there is none of that id. */
+ContactSet::Candidate& ContactSet::insert(const Candidate& candidate)
 {
-  candidates_.push_back({point, use});
+  const auto place = std::partition_point(candidates_.begin(), candidates_.end(),
+                                          [&](const Candidate& a) { return a.point.id < candidate.point.id; });
+  return *candidates_.insert(place, candidate);
 }
 
+/** Of two with one id the first stays. */
 void ContactSet::sortCandidates()
 {
   const auto before = [](const Candidate& a, const Candidate& b) { return a.point.id < b.point.id; };

@@ -7,7 +7,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double CLOSING_MARGIN = 2.0;  ///< times what the free motion closes of a gap, as contacts have it
 constexpr double OVERLAP = 1e-9;  ///< [rad] or [m]: what an answer may go beyond a limit
 
 double sign(int side)

@@ -25,7 +25,6 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
-  bool canAskLess() const;
   bool pushesOut() const;
   void askLess();
   void setUnsatisfied();

@@ -82,12 +82,14 @@ void Simulator::Impl::solveStep()
       assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
       assembly.assembleProblem(context);
     }
-    solver.solve(assembly.problem(), guess, !canAskLess(), pushesOut(), result);
+    const bool pushes = pushesOut();
+    const bool can_ask_less = pushes || contact_set.canGoBack();
+    solver.solve(assembly.problem(), guess, !can_ask_less, pushes, result);
     again = Again::NO;
     failed_rounds += result.status != SolverStatus::CONVERGED;
     if (mayGoOn(result.status) && failed_rounds <= MOST_FAILED_ROUNDS && isMotion(result.solution))
       again = assembly.again(context, result.solution, result.status == SolverStatus::CONVERGED);
-    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED && canAskLess())
+    if (again == Again::NO && mayGoOn(result.status) && result.status != SolverStatus::CONVERGED && can_ask_less)
     {
       askLess();
       again = Again::FROM_GUESS;
@@ -100,15 +102,6 @@ void Simulator::Impl::solveStep()
   solver.takeLeastNorm(assembly.problem(), result);
 }
 
-/**
- * Whether a solve without an answer leaves something to be asked less: fewer rows, or overlaps that are not pushed out
- * (what is wedged, u_N < mu |u_T| in all its motions, cannot separate whatever the force).
- */
-bool Simulator::Impl::canAskLess() const
-{
-  return pushesOut() || contact_set.canGoBack();
-}
-
 /** Whether a row asks for a separation, not for round-off only. */
 bool Simulator::Impl::pushesOut() const
 {
@@ -119,6 +112,10 @@ bool Simulator::Impl::pushesOut() const
              { return (point.is_linearised ? point.row_gap : point.gap) < -GAP_ROUND_OFF; });
 }
 
+/**
+ * After a solve without an answer: overlaps that are not pushed out (what is wedged, u_N < mu |u_T| in all its motions,
+ * cannot separate whatever the force), else fewer rows.
+ */
 void Simulator::Impl::askLess()
 {
   if (pushesOut())

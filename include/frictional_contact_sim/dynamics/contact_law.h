@@ -44,6 +44,8 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
  */
 NormalShift impactShift(double gap, double old_velocity, double restitution, double dt);
 
+/// Contacts and limits have a row at first where the free motion closes their gap so many times over: other rows add.
+constexpr double CLOSING_MARGIN = 2.0;
 constexpr double CONTACT_GAP = 1e-9;  ///< closer than this is touching, for the impact solve at a given state [m]
 
 }  // namespace frictional_contact_sim

@@ -131,7 +131,7 @@ private:
   double tolerance() const;
   double sizeOf(const ContactPoint& point) const;
   void detectAtMiddle(const StepContext& context);
-  void addCandidate(const ContactPoint& point, Use use);
+  Candidate& insert(const Candidate& candidate);
   void sortCandidates();
   Candidate* known(const ContactId& id);
   void takePoints();
