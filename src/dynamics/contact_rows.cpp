@@ -26,6 +26,14 @@ ContactMode modeOf(const ContactRow& row, const Eigen::Vector3d& impulse, const 
   const bool inside = margin > 1e-6 * row.friction * impulse[0];
   return inside || velocity.tail<2>().norm() <= speed ? ContactMode::STICKING : ContactMode::SLIDING;
 }
+
+/** In the frame of the contact. */
+Eigen::Vector3d impulseOf(const ContactRow& row, const Solution& solution)
+{
+  if (row.count == 3)
+    return solution.r.segment<3>(row.row);
+  return {solution.r[row.row], 0.0, 0.0};
+}
 }  // namespace
 
 const char* toString(ContactMode mode)
@@ -121,6 +129,16 @@ bool ContactRows::movesAlong(const Eigen::Vector3d& normal) const
   return false;
 }
 
+/** Of the point whose columns were collected. */
+Eigen::Vector3d ContactRows::relativeVelocity(const Eigen::VectorXd& v, const Eigen::Vector3d& relative_base) const
+{
+  Eigen::Vector3d velocity = relative_base;
+  for (const auto* columns : {&columns_a_, &columns_b_})
+    for (const auto& [column, motion] : *columns)
+      velocity += v[column] * motion;
+  return velocity;
+}
+
 void ContactRows::add(const StepContext& context, int index, RowSink& sink)
 {
   const ContactPoint& point = (*context.points)[index];
@@ -139,11 +157,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const Eigen::Vector3d relative_base =
       baseVelocity(bodies_, shape_a, point.position) - baseVelocity(bodies_, shape_b, point.position);
   const Eigen::Vector3d* axes[3] = {&point.normal, &contact.tangent_1, &contact.tangent_2};
-  Eigen::Vector3d velocity = relative_base;
-  for (const auto& [column, motion] : columns_a_)
-    velocity += (*context.v_old)[column] * motion;
-  for (const auto& [column, motion] : columns_b_)
-    velocity += (*context.v_old)[column] * motion;
+  const Eigen::Vector3d velocity = relativeVelocity(*context.v_old, relative_base);
 
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
@@ -162,12 +176,13 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   contact.restitution = material.restitution;
   contact.shift = shift.shift;
   contact.closing = shift.closing;
+  contact.count = contact.friction > 0.0 ? 3 : 1;
   if (contact.closing)
     sink.noteClosing();
-  else if (material.creep != nullptr && !context.impact)
+  else if (contact.count == 3 && material.creep != nullptr && !context.impact)
     creep_->bend(context, *material.creep, velocity, last(point.id), contact);
 
-  for (int d = 0; d < 3; ++d)
+  for (int d = 0; d < contact.count; ++d)
   {
     // Both lists ascend; merge them, adding where a self-contact has a coordinate on both sides.
     size_t i = 0;
@@ -191,7 +206,10 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
                                  : 0.0),
                 {d == 0 ? WorkAccount::IMPACT : WorkAccount::FRICTION, base, nullptr});
   }
-  sink.endLaw({LawType::COULOMB_3D, material.friction});
+  if (contact.count == 3)
+    sink.endLaw({LawType::COULOMB_3D, material.friction});
+  else
+    sink.endLaw({LawType::UNILATERAL, 0.0});
   rows_.push_back(contact);
 }
 
@@ -215,6 +233,8 @@ void ContactRows::guess(const StepContext& context, bool from_answer, Solution& 
     if (impulse == nullptr)
       continue;
     guess.r[row.row] = point.normal.dot(*impulse);
+    if (row.count == 1)
+      continue;
     guess.r[row.row + 1] = row.tangent_1.dot(*impulse);
     guess.r[row.row + 2] = row.tangent_2.dot(*impulse);
   }
@@ -227,7 +247,7 @@ Again ContactRows::again(const StepContext& context, const Solution& solution, b
   for (const ContactRow& row : rows_)
   {
     const ContactPoint& point = (*context.points)[row.point];
-    const Eigen::Vector3d r = solution.r.segment<3>(row.row);
+    const Eigen::Vector3d r = impulseOf(row, solution);
     answer_.emplace_back(point.id, r[0] * point.normal + r[1] * row.tangent_1 + r[2] * row.tangent_2);
   }
   return Again::NO;
@@ -263,14 +283,29 @@ void ContactRows::markActing(std::vector<char>& bodies) const
           bodies[body] = 1;
 }
 
+/** In the frame of the contact, with its shift; where there is no friction the tangents have no rows. */
+Eigen::Vector3d ContactRows::velocityOf(const ContactRow& row, const ContactPoint& point, const Solution& solution)
+{
+  if (row.count == 3)
+    return solution.u.segment<3>(row.row);
+  const ShapeInfo& shape_a = world_.shape(point.shape_a);
+  const ShapeInfo& shape_b = world_.shape(point.shape_b);
+  collectColumns(shape_a, point.position, 1.0, columns_a_);
+  collectColumns(shape_b, point.position, -1.0, columns_b_);
+  const Eigen::Vector3d velocity =
+      relativeVelocity(solution.v, baseVelocity(bodies_, shape_a, point.position) -
+                                       baseVelocity(bodies_, shape_b, point.position));
+  return {solution.u[row.row], row.tangent_1.dot(velocity), row.tangent_2.dot(velocity)};
+}
+
 void ContactRows::accept(const StepContext& context, const StepAnswer& answer)
 {
   contacts_.clear();
   for (const ContactRow& row : rows_)
   {
     const ContactPoint& point = (*context.points)[row.point];
-    const Eigen::Vector3d r = answer.solution.r.segment<3>(row.row);
-    Eigen::Vector3d u = answer.solution.u.segment<3>(row.row);
+    const Eigen::Vector3d r = impulseOf(row, answer.solution);
+    Eigen::Vector3d u = velocityOf(row, point, answer.solution);
     u[0] -= row.shift;
     if (row.creep.compliance > 0.0)
       u[1] -= row.creep.compliance * r[1] + row.creep.offset;

@@ -1,7 +1,8 @@
 #pragma once
 /**
  * @file contact_rows.h
- * @brief Contacts: three rows (normal, tangent 1, tangent 2) each, Coulomb's law with the shift of the normal law.
+ * @brief Contacts: three rows (normal, tangent 1, tangent 2) each, Coulomb's law with the shift of the normal law; the
+ * normal row alone where there is no friction.
  *
  *     u = H v + w,   H the relative point velocity of the two links,   w = moving bases + shift (contact_law.h)
  */
@@ -25,6 +26,7 @@ struct ContactRow
 {
   int point = 0;  ///< index in the list of detected contact points
   int row = 0;  ///< first row
+  int count = 3;  ///< of rows; 1 without friction
   int law = 0;
   Eigen::Vector3d tangent_1 = Eigen::Vector3d::UnitX();
   Eigen::Vector3d tangent_2 = Eigen::Vector3d::UnitY();
@@ -62,7 +64,9 @@ private:
   void add(const StepContext& context, int index, RowSink& sink);
   void collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
                       PointColumns& columns) const;
+  Eigen::Vector3d relativeVelocity(const Eigen::VectorXd& v, const Eigen::Vector3d& relative_base) const;
   bool movesAlong(const Eigen::Vector3d& normal) const;
+  Eigen::Vector3d velocityOf(const ContactRow& row, const ContactPoint& point, const Solution& solution);
   /** Last contact of the same id, or nullptr where there was none or it was an impact. */
   const ContactState* last(const ContactId& id) const;
 
