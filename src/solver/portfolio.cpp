@@ -10,6 +10,7 @@
 #include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/haslinger.h"
+#include "frictional_contact_sim/solver/interior_point.h"
 #include "frictional_contact_sim/solver/one_contact.h"
 #include "frictional_contact_sim/solver/swept_newton.h"
 #include "options_check.h"
@@ -31,6 +32,8 @@ constexpr double SERIES_MARGIN = 1e-4;
 constexpr double HASLINGER_SLOWEST = 0.2;
 /// ... or whose convex problem takes more steps than this.
 constexpr int HASLINGER_INNER_STEPS = 100;
+/// Impulses of the interior point are a self-stress where they are so many times those of every law alone.
+constexpr double LARGEST_IMPULSES = 1e3;
 /// What a first turn reached is a better start for the others when it is below this share of the residual before it.
 constexpr double WORTH_KEEPING = 1e-3;
 
@@ -66,6 +69,7 @@ void PortfolioOptions::validate() const
   requireOption(newton_first_rows >= 0, "portfolio.newton_first_rows", newton_first_rows, ">= 0");
   requireOption(newton_first_steps >= 1, "portfolio.newton_first_steps", newton_first_steps, ">= 1");
   requireOption(haslinger_steps >= 1, "portfolio.haslinger_steps", haslinger_steps, ">= 1");
+  requireOption(interior_steps >= 1, "portfolio.interior_steps", interior_steps, ">= 1");
   requireOption(newton_try_rows >= 0, "portfolio.newton_try_rows", newton_try_rows, ">= 0");
   requireOption(newton_try_steps >= 1, "portfolio.newton_try_steps", newton_try_steps, ">= 1");
   requireOption(newton_last_rows >= newton_first_rows, "portfolio.newton_last_rows", newton_last_rows,
@@ -87,6 +91,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , newton_(std::make_unique<AcNewton>())
   , first_newton_(std::make_unique<AcNewton>(firstNewton(true)))
   , newton_trial_(std::make_unique<AcNewton>(firstNewton(false)))
+  , interior_point_(std::make_unique<InteriorPoint>())
   , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
 {
@@ -154,6 +159,7 @@ bool Portfolio::run(Solver& method, const DelassusProblem& problem, const SolveC
 /** Every law solved as if it were alone: exact where laws are not coupled. */
 void Portfolio::solveApart(const DelassusProblem& problem, Eigen::VectorXd& r)
 {
+  r.resize(problem.W.rows());
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     const Law& law = problem.laws[static_cast<size_t>(i)];
@@ -257,6 +263,22 @@ bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext&
   return done;
 }
 
+/** The interior point, its answer not taken where it is a self-stress above all: it ends in the middle of all answers,
+ * and where impulses may grow without bound between wedged bodies it has some that are as large as it could make them. */
+bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+{
+  const double value = best_value_;
+  first_r_ = best_r_;
+  if (!run(*interior_point_, problem, context, options_.interior_steps, result))
+    return false;
+  solveApart(problem, apart_r_);
+  if (best_r_.norm() <= LARGEST_IMPULSES * apart_r_.norm())
+    return true;
+  best_value_ = value;
+  best_r_ = result.solution.r = first_r_;
+  return false;
+}
+
 void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   used_ = 0;
@@ -272,7 +294,10 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   const bool newton = problem.W.rows() <= options_.newton_last_rows;
   const bool swept = !newton_first && problem.W.rows() <= options_.swept_last_rows;
   if (newton_first)
+  {
     done = done || tryNewton(*first_newton_, problem, context, options_.newton_first_steps, result);
+    done = done || tryInteriorPoint(problem, context, result);
+  }
   else if (problem.W.rows() <= options_.newton_try_rows)
     done = done || tryNewton(*newton_trial_, problem, context, options_.newton_try_steps, result);
   if (!newton_first)

@@ -25,6 +25,7 @@ using test_support::RunAudit;
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t SUITE_SEEDS = 320;
+constexpr std::uint32_t MESH_SHARE = 8;  ///< so many scenes for one with meshes
 constexpr int MOST_FAILED_STEPS = 3;  ///< then the run has shown what it can
 
 std::uint32_t seedCount()
@@ -78,7 +79,12 @@ protected:
   template <typename Look>
   void forSeeds(std::uint32_t every, const Look& look) const
   {
+    std::vector<std::uint32_t> seeds;
     for (std::uint32_t seed = GetParam(); seed < seedCount(); seed += 2)
+      seeds.push_back(seed);
+    for (std::uint32_t seed = GetParam(); seed < seedCount() / MESH_SHARE; seed += 2)
+      seeds.push_back(test_support::MESH_SEEDS + seed);
+    for (const std::uint32_t seed : seeds)
       if (test_support::isKnownSeed("slow", seed))
         std::cout << "[  known   ] slow: seed " << seed << " is not run\n";
       else if (seed / 2 % every == 0)

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "frictional_contact_sim/model/kinematics.h"
 #include "support/convex_solid.h"
@@ -14,11 +15,12 @@ namespace test_support
 namespace
 {
 constexpr double PI = 3.14159265358979323846;
+constexpr double MESH_SHARE = 0.7;  ///< of the shapes of a robot with meshes
 
 class RobotWriter
 {
 public:
-  explicit RobotWriter(Dice& dice) : dice_(dice)
+  RobotWriter(Dice& dice, const std::string& mesh_prefix) : dice_(dice), mesh_prefix_(mesh_prefix)
   {
     count_ = dice.chance(0.3) ? 1 : dice.chance(0.7) ? dice.integer(2, 8) : dice.integer(9, 25);
     size_ = dice.logUniform(0.03, 0.3);
@@ -29,7 +31,7 @@ public:
     xml_ = "<robot name='random'>\n" + links_ + joints_ + "</robot>\n";
   }
 
-  RandomRobot take() const { return {xml_, size_, total_, list_}; }
+  RandomRobot take() const { return {xml_, size_, total_, list_, meshes_}; }
 
 private:
   void addLink(int index)
@@ -49,14 +51,16 @@ private:
               text(moments.x() + moments.y()) + "' ixy='0' ixz='0' iyz='0'/></inertial>";
     if (index == 0 || dice_.chance(0.8))
       links_ += "<collision><origin rpy='" + text(dice_.vector(dice_.chance(0.5) ? PI : 0.0)) + "'/><geometry>" +
-                shape(scale) + "</geometry></collision>";
+                shape(index, scale) + "</geometry></collision>";
     links_ += "</link>\n";
     if (index > 0)
       addJoint(index, mass, scale);
   }
 
-  std::string shape(double scale)
+  std::string shape(int index, double scale)
   {
+    if (!mesh_prefix_.empty() && dice_.chance(MESH_SHARE))
+      return mesh(index, scale);
     switch (dice_.integer(0, 3))
     {
       case 0:
@@ -71,6 +75,14 @@ private:
         return "<capsule radius='" + text(scale * dice_.logUniform(0.2, 0.4)) + "' length='" +
                text(scale * dice_.logUniform(0.3, 1.5)) + "'/>";
     }
+  }
+
+  std::string mesh(int index, double scale)
+  {
+    const auto kind = static_cast<MeshKind>(dice_.integer(0, static_cast<int>(MeshKind::KINDS) - 1));
+    const std::string name = "l" + std::to_string(index);
+    meshes_.push_back({mesh_prefix_ + name + ".stl", name, makeRandomMesh(kind, scale * dice_.logUniform(0.3, 1.0), dice_)});
+    return "<mesh filename='" + meshes_.back().file + "'/>";
   }
 
   static std::string pick(double x)
@@ -148,23 +160,36 @@ private:
   }
 
   Dice& dice_;
+  std::string mesh_prefix_;  ///< of file names; empty: no meshes
   int count_;
   double size_, mass_, spread_, total_ = 0.0;
   std::string xml_, links_, joints_;
   std::vector<RandomJoint> list_;
   std::vector<int> followers_, depth_;
+  std::vector<NamedMesh> meshes_;
 };
+
+/** Vertices of the mesh of a shape; none where it is no mesh. */
+std::vector<Eigen::Vector3d> verticesOf(const RandomRobot& robot, const std::string& frame)
+{
+  for (const NamedMesh& named : robot.meshes)
+    if (named.frame == frame)
+      return named.mesh.vertices;
+  return {};
+}
 }  // namespace
 
-RandomRobot randomRobot(Dice& dice)
+RandomRobot randomRobot(Dice& dice, const std::string& mesh_prefix)
 {
-  return RobotWriter(dice).take();
+  return RobotWriter(dice, mesh_prefix).take();
 }
 
 Extent extentOf(const RandomRobot& robot, BaseType base, const Eigen::Vector3d& rpy)
 {
   const std::vector<RandomJoint>& joints = robot.joints;
-  const MultibodyModel model = loadUrdf(robot.xml, "random", base).model;
+  // Spheres stand in for meshes, which are no files yet.
+  const std::string xml = std::regex_replace(robot.xml, std::regex("<mesh [^>]*>"), "<sphere radius='1'/>");
+  const MultibodyModel model = loadUrdf(xml, "random", base).model;
   Eigen::VectorXd q = zeroPosition(model);
   for (size_t i = 0; i < joints.size(); ++i)
     if (joints[i].single)
@@ -190,7 +215,8 @@ Extent extentOf(const RandomRobot& robot, BaseType base, const Eigen::Vector3d& 
   Extent extent;
   for (const CollisionShape& shape : model.shapes)
   {
-    const ConvexSolid solid(shape.geometry);
+    const std::vector<Eigen::Vector3d> vertices = verticesOf(robot, model.frames[shape.frame].name);
+    const ConvexSolid solid = vertices.empty() ? ConvexSolid(shape.geometry) : ConvexSolid(vertices);
     const Eigen::Isometry3d at = data.link_pose[shape.link] * shape.placement;
     const Eigen::Vector3d up = at.linear().row(2).transpose();
     extent.low = std::min(extent.low, at.translation().z() - solid.reachAgainst(up));

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
-
-#include "support/random_robot.h"
 
 namespace frictional_contact_sim
 {
@@ -50,7 +49,8 @@ private:
   {
     const bool limp = dice_.chance(0.4);
     const bool hold = !limp && (calm_ || dice_.chance(0.3));
-    const RandomRobot robot = randomRobot(dice_);
+    const std::string prefix = "seed_" + std::to_string(scene_.seed) + "_" + std::to_string(index) + "_";
+    RandomRobot robot = randomRobot(dice_, scene_.seed >= MESH_SEEDS ? prefix : "");
     const bool fixed = dice_.chance(0.15) && robot.joints.size() > 2;
     const Eigen::Vector3d rpy = dice_.vector(dice_.chance(0.7) ? PI : 0.0);
     std::string joints;
@@ -89,6 +89,7 @@ private:
                ", \"from\": 0.3, \"until\": 0.5}]";
     scene_.bodies.push_back(entry + "}");
     scene_.urdfs.push_back(robot.xml);
+    std::move(robot.meshes.begin(), robot.meshes.end(), std::back_inserter(scene_.meshes));
   }
 
   /**
@@ -226,6 +227,8 @@ std::string writeScene(const RandomScene& scene, const std::string& folder, cons
   for (size_t body = 0; body < scene.urdfs.size(); ++body)
     std::ofstream(folder + "/seed_" + std::to_string(scene.seed) + "_" + std::to_string(body) + ".urdf")
         << scene.urdfs[body];
+  for (const NamedMesh& mesh : scene.meshes)
+    writeStl(mesh.mesh, folder + "/" + mesh.file);
   const std::string path = folder + "/" + name + ".yaml";
   std::ofstream file(path);
   file << scenario;

@@ -8,7 +8,8 @@
  * triangle inequality, centres of mass off the origin, and box, sphere, cylinder, capsule as shapes. Bodies stand apart
  * at the start (touching bounding circles at the least, or one above the other); links of one body may overlap, which
  * the world then leaves out. Some scenes begin with a clamp: two jaws and a block that touches both. Even seeds are for
- * tuning, odd ones for judging.
+ * tuning, odd ones for judging. From MESH_SEEDS on most shapes are meshes (random_mesh.h), often of a single body: they
+ * fall and rest alone, in piles and as the links and feet of robots.
  *
  * | mode      | what happens                                                                                      |
  * | --------- | ------------------------------------------------------------------------------------------------- |
@@ -20,6 +21,8 @@
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "support/random_robot.h"
 
 namespace frictional_contact_sim
 {
@@ -34,6 +37,8 @@ enum class SceneMode
 };
 const char* toString(SceneMode mode);
 
+constexpr std::uint32_t MESH_SEEDS = 100000;
+
 struct RandomScene
 {
   std::uint32_t seed = 0;
@@ -41,6 +46,7 @@ struct RandomScene
   std::string scenario;  ///< JSON, which is YAML; names the URDF of body k as seed_SEED_k.urdf
   std::vector<std::string> bodies;  ///< each body's entry of `scenario`
   std::vector<std::string> urdfs;
+  std::vector<NamedMesh> meshes;
   std::string head;  ///< of the scenario, without its bodies
 
   /** @brief Of the first `count` bodies and, where not empty, one more entry. */
@@ -51,7 +57,7 @@ struct RandomScene
 /** @brief The same scene for the same seed. Mode: seed / 2 mod 4. */
 RandomScene randomScene(std::uint32_t seed);
 
-/** @brief Writes `scenario` as FOLDER/NAME.yaml and the URDFs beside it. @return the path of the scenario */
+/** @brief Writes `scenario` as FOLDER/NAME.yaml, the URDFs and meshes beside it. @return the path of the scenario */
 std::string writeScene(const RandomScene& scene, const std::string& folder, const std::string& scenario,
                        const std::string& name);
 

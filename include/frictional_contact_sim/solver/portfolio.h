@@ -4,7 +4,8 @@
  * @brief Methods in turn, the best iterate kept: the default of the package.
  *
  *   0  the guess is already good, or, from a cold start, every law solved apart is: no iteration at all
- *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem);
+ *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem), then the
+ *      interior point, which takes 20 to 60 iterations where Newton goes in circles: feet on many redundant points;
  *      some more rows: the same for a few steps, given up at the first that fails;
  *      many rows: Haslinger's fixed point as long as every iteration takes four fifths of the residual, as it does
  *      where nearly everything sticks (a tower at rest), then Gauss-Seidel sweeps with a stall detector, then proximal
@@ -12,9 +13,9 @@
  *      (solver/swept_newton.h) between the two, above newton_last_rows in place of Newton
  *   2  what is left, while the budget lasts: Gauss-Seidel from the best iterate, Newton from there, then the smoothed
  *      Fischer-Burmeister Newton, De Saxce's and the smoothed one with its damped steps, each of which factors J' J, in
- *      longer rounds; above newton_last_rows instead of these Newtons Haslinger's fixed point, which needs products
- *      with W only; on more than few rows Newton with sweeps, before it above newton_last_rows, else at the end of a
- *      round; above swept_last_rows nothing is factored
+ *      longer rounds; above newton_last_rows instead of these Haslinger's fixed point, which
+ *      needs products with W only; on more than few rows Newton with sweeps, before it above newton_last_rows, else at
+ *      the end of a round; above swept_last_rows nothing is factored
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
@@ -32,12 +33,14 @@ namespace frictional_contact_sim
 class GaussSeidel;
 class AcNewton;
 class Haslinger;
+class InteriorPoint;
 class SweptNewton;
 
 struct PortfolioOptions
 {
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 60;  ///< its budget in that place, >= 1
+  int interior_steps = 40;  ///< budget of the interior point where that has failed, >= 1
   int newton_try_rows = 290;  ///< up to this many rows it goes first too, but for newton_try_steps at most
   int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
   int haslinger_steps = 10;  ///< outer iterations of Haslinger's fixed point on more rows, as long as it is quick, >= 1
@@ -78,6 +81,7 @@ private:
   double criterion(const DelassusProblem& problem, const SolveContext& context, const Eigen::VectorXd& r);
   bool tryNewton(AcNewton& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
                  SolverResult& result);
+  bool tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, const SolveContext& context, int budget,
            SolverResult& result, double margin = 1.0);
@@ -86,11 +90,12 @@ private:
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_, first_newton_;
   std::unique_ptr<AcNewton> newton_trial_;  ///< gives up at the first failure
+  std::unique_ptr<InteriorPoint> interior_point_;
   std::unique_ptr<Haslinger> haslinger_;  ///< gives up when it is slow
   std::unique_ptr<SweptNewton> swept_newton_;
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
-  Eigen::VectorXd velocity_, best_r_, first_r_;
+  Eigen::VectorXd velocity_, best_r_, first_r_, apart_r_;
   double best_value_ = 0.0;
   int used_ = 0;
 };
