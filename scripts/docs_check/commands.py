@@ -6,13 +6,13 @@ from . import blocks
 from .repository import PACKAGE
 
 # Programs of others that documents may use; their options are not looked at.
-FOREIGN = {'apt-get', 'cat', 'catkin_make', 'cd', 'chmod', 'cmake', 'cp', 'done', 'echo', 'export', 'for', 'git', 'grep', 'kill', 'ls',
+FOREIGN = {'apt-get', 'cat', 'catkin_make', 'cd', 'chmod', 'cmake', 'cp', 'done', 'echo', 'export', 'for', 'git', 'grep', 'head', 'kill', 'ls',
            'make', 'mkdir', 'python3', 'rm', 'rosbag', 'roscore', 'roslaunch', 'rosmsg', 'rosnode', 'rosparam', 'rosrun',
            'rosservice', 'rossrv', 'rostest', 'rostopic', 'rviz', 'sleep', 'source', 'valgrind', 'wait'}
 SEPARATORS = {'&&', '||', '|', ';', '&', '(', ')'}
 BEFORE = {'do', 'exec', 'sudo', 'time'}  # words a command may stand behind
 # Options whose value is a file or folder that the command writes; words of ROS arguments likewise.
-WRITES = {'--output', '--save-state', '--history', '--dump', '--json', '-O', '>', '>>', 'bag:=', '_bag:=', '_dump_dir:='}
+WRITES = {'--output', '--save-state', '--history', '--dump', '-O', '>', '>>', 'bag:=', '_bag:=', '_dump_dir:='}
 WRITES_POSITIONAL = {'record_bag': 0, 'generate_problem': -1, 'robustness': 0, 'scripts/demo': 0, 'mkdir': -1,
                      'scripts/compare_builds': 1}
 EXTENSION = re.compile(r'\.(yaml|urdf|hdf5|csv|bag|launch|py|test|txt|bash|cpp|sh|md|state)$')
@@ -52,10 +52,9 @@ def split(line):
     """The simple commands of a line of shell."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars='&|;<>()')
     lexer.whitespace_split = True
-    lexer.commenters = ''
+    lexer.commenters = '#'
     words, redirections, found = [], [], []
-    tokens = list(lexer)
-    for token in tokens[:next((i for i, t in enumerate(tokens) if t.startswith('#')), len(tokens))] + [';']:
+    for token in list(lexer) + [';']:
         if token in SEPARATORS:
             found.append(Command(words, redirections))
             words, redirections = [], []
@@ -107,6 +106,8 @@ def check_command(repo, command):
 
 
 def check_program(repo, command):
+    if blocks.PLACEHOLDER.fullmatch(command.name):
+        return []
     # rosrun finds the package's scripts too.
     if command.name not in repo.programs and not repo.exists(f'scripts/{command.name}'):
         return [f'no program {command.name}']

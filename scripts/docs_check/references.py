@@ -26,6 +26,8 @@ def is_there(repo, name, folder):
         return not name.endswith('.md')  # data beside the checkout, which may be absent; never a page
     if CAPITALS.search(name) and not name.endswith('.md'):
         return True  # a placeholder
+    if name.endswith('.md') and not set('/*') & set(name):
+        return name in repo.files
     if '/' in name:
         return repo.resolve(name) or (repo.root / folder / name).exists() or f'"{name}' in repo.literals
     return name in repo.files or name in repo.literals or any(path.match(name) for path in repo.paths() if '*' in name) or \
@@ -51,8 +53,13 @@ def check_document(repo, document):
     for number, line in enumerate(text.split('\n'), 1):
         fenced ^= line.strip().startswith('```')
         for target in re.findall(r'\]\(([^)#\s]+)(?:#[\w-]*)?\)', line):
-            if not target.startswith(('http:', 'https:')) and not (repo.root / document.parent / target).exists():
+            # A template becomes a page of docs/.
+            folder = 'docs' if document.stem.endswith('_template') else document.parent
+            if not target.startswith(('http:', 'https:')) and not (repo.root / folder / target).exists():
                 found.append((document, number, f'no file {target}'))
+        for name in re.findall(r'[A-Z_]{4,}\.md', line):
+            if name not in repo.files:
+                found.append((document, number, f'no page {name}'))
         for name in NODE_NAME.findall(line):
             if not repo.is_node_name(name.rstrip('/')):
                 found.append((document, number, f'the node has no parameter, topic or service ~{name}'))
