@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """A controller in ten lines: the quadruped of simulate.launch goes up and down, half a turn a second."""
 import math
 

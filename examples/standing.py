@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """After two seconds the ground carries the weight of the quadruped, no more and no less."""
 import unittest
 import xml.etree.ElementTree as ElementTree

@@ -19,7 +19,7 @@ def sh_blocks(repo, document):
     """The ```sh blocks of a document; in a launch file the lines of comments that start with roslaunch."""
     text = repo.text(document).split('\n')
     if document.suffix == '.launch':
-        lines = [(n, line.strip()) for n, line in enumerate(text, 1) if line.strip().startswith('roslaunch ')]
+        lines = [(n, line.strip().replace('-->', '')) for n, line in enumerate(text, 1) if line.strip().startswith('roslaunch ')]
         return [Block(lines[0][0], 'not run: shown in the README too', lines)] if lines else []
     found, mode, block = [], '', None
     for number, line in enumerate(text, 1):

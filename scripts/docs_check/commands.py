@@ -40,7 +40,7 @@ class Command:
             self.kind, self.name, self.arguments = 'program', words[1], words[2:]
         elif words[0] == 'rosrun' and len(words) > 2 and words[1] == PACKAGE:
             self.kind, self.name, self.arguments = 'program', words[2], words[3:]
-        elif f'devel/lib/{PACKAGE}/' in words[0]:
+        elif re.match(rf'(\./)?devel/lib/{PACKAGE}/', words[0]):
             self.kind, self.name = 'program', words[0].rsplit('/', 1)[1]
         elif '/' in words[0]:
             self.kind = 'script'
@@ -91,6 +91,17 @@ def check_line(repo, line, written):
 
 
 def check_command(repo, command):
+    """Of the command, of those that are its quoted arguments, and of a foreign program's options."""
+    faults = check_own(repo, command)
+    for word in command.arguments:
+        if re.match(r'(scripts/|devel/)\S+ ', word):
+            faults += [fault for inner in split(word) for fault in check_own(repo, inner)]
+    known = repo.foreign_options(command.name) if command.kind == 'foreign' else None
+    given = {word.split('=')[0] for word in command.arguments if word.startswith('--')} if known else set()
+    return faults + [f'{command.name} has no option {option}' for option in sorted(given - (known or set()))]
+
+
+def check_own(repo, command):
     if command.kind == 'program':
         return check_program(repo, command)
     if command.kind == 'script':
@@ -100,8 +111,9 @@ def check_command(repo, command):
     if command.name in ('rosmsg', 'rossrv'):
         return [f'no message or service {word}' for word in command.arguments if word.startswith(PACKAGE + '/') and
                 not any(repo.exists(f'{kind}/{word.split("/")[1]}.{kind}') for kind in ('msg', 'srv'))]
-    if command.name == 'rosrun' or command.name == 'rostest':
-        return [] if PACKAGE in ' '.join(command.arguments) else [f'another package: {command.arguments}']
+    if command.name in ('rosrun', 'rostest'):
+        ours = PACKAGE in command.arguments or f'--package={PACKAGE}' in command.arguments
+        return [] if ours else [f'another package: {" ".join(command.arguments)}']
     return check_ros_names(repo, command) if command.name in ROS_NAMES else []
 
 

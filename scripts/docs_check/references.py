@@ -1,4 +1,5 @@
 """What texts refer to: paths in links, inline code and comments; names of the node."""
+import difflib
 import io
 import re
 import tokenize
@@ -24,14 +25,22 @@ def is_there(repo, name, folder):
     """@param folder of the text that says it"""
     if name.startswith('../shared/'):
         return not name.endswith('.md')  # data beside the checkout, which may be absent; never a page
-    if CAPITALS.search(name) and not name.endswith('.md'):
-        return True  # a placeholder
+    if CAPITALS.search(name) and not name.endswith('.md'):  # a placeholder, in a folder that is there
+        fixed = re.split(r'(?:^|/)[^/]*[A-Z]{2}', name)[0]
+        return not fixed or repo.resolve(fixed)
     if name.endswith('.md') and not set('/*') & set(name):
         return name in repo.files
     if '/' in name:
         return repo.resolve(name) or (repo.root / folder / name).exists() or f'"{name}' in repo.literals
     return name in repo.files or name in repo.literals or any(path.match(name) for path in repo.paths() if '*' in name) or \
         f'<{name}>' in includes(repo)
+
+
+def is_near_folder(repo, name):
+    """A path whose first folder is not there, but nearly."""
+    first = name.split('/')[0]
+    return '/' in name and first not in repo.folders and \
+        bool(difflib.get_close_matches(first, [folder for folder in repo.folders if len(folder) > 2], cutoff=0.8))
 
 
 def includes(repo):
@@ -47,7 +56,7 @@ def check_document(repo, document):
     text = repo.text(document)
     for number, code in blocks.inline_code(repo, document):
         for name in [part for whole in re.findall(r'[\w./*{},-]+', code) for part in expand(whole)]:
-            if (FILE.fullmatch(name) or FOLDERED.fullmatch(name)) and not is_there(repo, name, document.parent):
+            if (FILE.fullmatch(name) or FOLDERED.fullmatch(name.rstrip('.')) or is_near_folder(repo, name)) and not is_there(repo, name, document.parent):
                 found.append((document, number, f'no file {name}'))
     fenced = False
     for number, line in enumerate(text.split('\n'), 1):
@@ -84,16 +93,19 @@ def comments(path, text):
                 yield number, line.split('#', 1)[1]
 
 
-def check_comments(repo):
+def commented(repo):
+    """Files whose comments are looked at."""
+    return [path for path in repo.paths()
+            if path.parts[0] in COMMENTED and path.suffix not in ('.md', '.csv', '.png', '.urdf', '.launch')]
+
+
+def check_comments(repo, path):
     """A comment sends its reader to nothing that the repository does not have."""
     found = []
-    for path in repo.paths():
-        if path.parts[0] not in COMMENTED or path.suffix in ('.md', '.csv', '.png', '.urdf', '.launch'):
-            continue
-        for number, line in comments(path, repo.text(path)):
-            for name in set(FILE.findall(line) + FOLDERED.findall(line)):
-                if not is_there(repo, name, path.parent):
-                    found.append((path, number, f'a comment names {name}, which is not there'))
-            for name in re.findall(r'(?<![\w/.-])(?:DESIGN|VERIFICATION|METHODS|INTERFACES|SEED_AUDIT)(?![\w])', line):
-                found.append((path, number, f'a comment names {name}, a page that is not in the repository'))
+    for number, line in comments(path, repo.text(path)):
+        for name in set(FILE.findall(line) + FOLDERED.findall(line)):
+            if not is_there(repo, name, path.parent):
+                found.append((path, number, f'a comment names {name}, which is not there'))
+        for name in re.findall(r'(?<![\w/.-])(?:DESIGN|VERIFICATION|METHODS|INTERFACES|SEED_AUDIT)(?![\w])', line):
+            found.append((path, number, f'a comment names {name}, a page that is not in the repository'))
     return found

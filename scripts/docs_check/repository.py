@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ElementTree
 PACKAGE = 'frictional_contact_sim'
 NOT_OURS = re.compile(r'^(build.*|devel|install|\.git|\.cache|__pycache__)$')  # as .gitignore
 OPTION = re.compile(r'(?<![\w-])--[a-z][a-z0-9-]*')
-HELP_TIMEOUT = 20.0  # of PROGRAM --help [s]: the machine may be loaded
+HELP_TIMEOUT = 8.0  # of PROGRAM --help [s]: the machine may be loaded
 
 
 @functools.lru_cache(maxsize=None)
@@ -46,6 +46,12 @@ class Repository:
 
     def paths(self):
         return sorted(path for paths in self.files.values() for path in paths)
+
+    @functools.cached_property
+    def folders(self):
+        """At the top, and the modules: what paths start with."""
+        return {'devel', 'build'} | {path.parts[0] for path in self.paths() if len(path.parts) > 1} | \
+            {path.parts[1] for path in self.paths() if path.parts[0] == 'src' and len(path.parts) > 2}
 
     @functools.lru_cache(maxsize=None)
     def text(self, path):
@@ -88,6 +94,11 @@ class Repository:
                 text += self.help(program, name)
         return set(OPTION.findall(text)) if text else None
 
+    def foreign_options(self, name):
+        """Of the programs of others that documents give options to; None: not looked at."""
+        return {'cmake': {'--build', '--target', '--parallel', '--install', '--prefix'}}.get(name) or \
+            (set(OPTION.findall(ask(name, '--help'))) if name in ('roslaunch', 'rostest') else None)
+
     def script_options(self, path):
         text = self.text(path)
         return set(OPTION.findall(head(text))) | set(re.findall(r'add_argument\(\s*[\'"](--[\w-]+)', text)) | {'--help'}
@@ -103,12 +114,12 @@ class Repository:
 
     @functools.cached_property
     def node_words(self):
-        """Parts of the string literals of src/ros, split at slashes: names of parameters, topics and services."""
+        """Parts, split at slashes, of the string literals of src/ros that are names: of parameters, topics and services."""
         words = set()
         for path in self.paths():
-            if path.parts[:2] in (('src', 'ros'), ('include', PACKAGE)) and path.suffix in ('.cpp', '.h'):
-                for literal in re.findall(r'"((?:[^"\\\n]|\\.)*)"', self.text(path)):
-                    words |= set(re.split(r'[/~ ]', literal))
+            if path.parent.name == 'ros' and path.suffix in ('.cpp', '.h'):
+                for literal in re.findall(r'"[~/]?([\w/]+)"', self.text(path)):
+                    words |= set(literal.split('/'))
         return words
 
     def is_node_name(self, name):
