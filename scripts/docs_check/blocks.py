@@ -7,11 +7,12 @@ import signal
 import socket
 import subprocess
 import tempfile
+import time
 
 Block = collections.namedtuple('Block', 'line mode lines')  # lines: [(number, command)]
 MARK = re.compile(r'<!-- check_docs: (long|until interrupted|not run: .+) -->')
 PLACEHOLDER = re.compile(r'(?<![\w$@])[A-Z][A-Z_]{2,}(?:\.{3}|\.\w+)?(?![\w=:])|/path/to/')
-TIMEOUT = {'': 120, 'long': 7200}  # of a block [s]
+TIMEOUT = {'': 300, 'long': 7200}  # of a block; the machine may be loaded [s]
 LIFE = 20.0  # of what never ends by itself, before SIGINT [s]
 
 
@@ -97,11 +98,22 @@ def run(repo, block, scratch):
         except subprocess.TimeoutExpired:
             early = False
             code = stop(process) if interrupt else f'no end within {TIMEOUT[block.mode]} s ({stop(process)})'
+        end_group(process)
         output.seek(0)
-        tail = ' | '.join(output.read().strip().split('\n')[-5:])
+        tail = ' | '.join(re.sub(r'\x1b\S*?[mK]|\x1b\].*?\x07', '', output.read()).strip().split('\n')[-5:])
     if early:
         return f'ended by itself with exit code {code}: {tail}'
     return None if code == 0 else f'exit code {code}: {tail}'
+
+
+def end_group(process):
+    """SIGTERM to what the block left in the background: roslaunch ends its nodes then. SIGKILL to what stays."""
+    for number in [signal.SIGTERM] + [0] * 20 + [signal.SIGKILL]:
+        try:
+            os.killpg(process.pid, number)
+        except ProcessLookupError:
+            return
+        time.sleep(0.5 if number == 0 else 0.1)
 
 
 def stop(process):

@@ -94,7 +94,7 @@ def check_command(repo, command):
     """Of the command, of those that are its quoted arguments, and of a foreign program's options."""
     faults = check_own(repo, command)
     for word in command.arguments:
-        if re.match(r'(scripts/|devel/)\S+ ', word):
+        if re.match(r'[\w.]+/[\w/]+ ', word):
             faults += [fault for inner in split(word) for fault in check_own(repo, inner)]
     known = repo.foreign_options(command.name) if command.kind == 'foreign' else None
     given = {word.split('=')[0] for word in command.arguments if word.startswith('--')} if known else set()

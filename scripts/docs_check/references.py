@@ -26,12 +26,14 @@ def is_there(repo, name, folder):
     if name.startswith('../shared/'):
         return not name.endswith('.md')  # data beside the checkout, which may be absent; never a page
     if CAPITALS.search(name) and not name.endswith('.md'):  # a placeholder, in a folder that is there
+        if '/' in name and '.' in name and not re.search(rf'\.({SUFFIXES}|bag|hdf5|png)$', name):
+            return False
         fixed = re.split(r'(?:^|/)[^/]*[A-Z]{2}', name)[0]
         return not fixed or repo.resolve(fixed)
     if name.endswith('.md') and not set('/*') & set(name):
         return name in repo.files
     if '/' in name:
-        return repo.resolve(name) or (repo.root / folder / name).exists() or f'"{name}' in repo.literals
+        return repo.resolve(name) or (repo.root / folder / name).exists() or f'"{name}"' in repo.literals
     return name in repo.files or name in repo.literals or any(path.match(name) for path in repo.paths() if '*' in name) or \
         f'<{name}>' in includes(repo)
 
