@@ -131,7 +131,7 @@ class CheckDocsTest(unittest.TestCase):
             for path, start, end in self.random.sample(places, min(MUTATIONS, len(places))):
                 text = path.read_text()
                 drop = self.random.choice([i for i in range(start, end)
-                                           if text[i].isalpha() and text[i - 1] != '.'])  # `name.` may end a sentence
+                                           if text[i].islower() and text[i - 1] != '.'])  # not of placeholders; `name.` may end a sentence
                 changed = text[start:drop] + text[drop + 1:end]
                 with self.subTest(f'{kind}: {path.relative_to(self.root)}: {text[start:end]} -> {changed}'):
                     self.assertTrue(self.found_with(path, text[:drop] + text[drop + 1:]))
