@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on any #include that DESIGN.md's module table does not allow.
+"""Fails on any #include that the module table of docs/architecture.md does not allow.
 
 A module may include itself, the modules below it that the table names (and what those may include), the C++ standard
 library and Eigen, and the third-party headers listed here; these only below src/, FCL and urdfdom in .cpp files.
@@ -33,7 +33,7 @@ PRIVATE = {
     "console_bridge": ["model"], "tinyxml2.h": ["model"], "tinyxml.h": ["model"], "rospack": ["model"],
     "yaml-cpp": ["simulation", "rolling"],
 }
-CPP_ONLY = {"fcl", "urdf_parser", "urdf_model", "urdf_world", "urdf"}  # DESIGN.md, rule 10: not in private headers either
+CPP_ONLY = {"fcl", "urdf_parser", "urdf_model", "urdf_world", "urdf"}  # rule 10 of docs/architecture.md: not in private headers either
 ROS = {"ros", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs", "rosgraph_msgs",
        "tf2_msgs", "trajectory_msgs", "diagnostic_msgs", "xmlrpcpp", "XmlRpcValue.h", "XmlRpcClient.h", "XmlRpc.h",
        "rosbag", "topic_tools", "diagnostic_updater", "tf2_ros", "tf2", "boost"}  # boost: only where roscpp hands it out
@@ -132,7 +132,7 @@ def main():
         module = place(path)[0]
         top = path.relative_to(ROOT).parts[0]
         if top in ("include", "src") and module not in MODULES and module != "tools":
-            print(f"{path.relative_to(ROOT)}: module {module} is not in DESIGN.md's table")
+            print(f"{path.relative_to(ROOT)}: module {module} is not in the table of docs/architecture.md")
             failures += 1
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -13,6 +13,17 @@ install_packages()
   "$package_dir/scripts/install_dependencies" "$@" >&2
 }
 
+# What the programs of the package are built from, the lists and state of Debian's packages among it.
+built_from=(include src msg srv CMakeLists.txt package.xml scripts/environment.sh scripts/packages.txt)
+built_stamp=$build_dir/.built
+
+# Whether all programs have been built, here, after the last change of what they are built from.
+is_built()
+{
+  [ -f "$built_stamp" ] && [ "$(<"$built_stamp")" = "$package_dir" ] &&
+    [ -z "$(cd "$package_dir" && find "${built_from[@]}" /var/lib/dpkg/status -newer "$built_stamp" -print -quit)" ]
+}
+
 # Configures (when needed) and builds: build_package [cmake options ...] [-- make targets ...]; prints on stderr only.
 build_package()
 {
@@ -34,8 +45,13 @@ build_package()
       -DWARNINGS_AS_ERRORS=ON -DCATKIN_ENABLE_TESTING=OFF "${options[@]}" >&2 || return
     touch "$stamp"
   fi
-  local code=0
+  # As of now: what changes during the build is newer.
+  local code=0 begin=$build_dir/.build_begin
+  echo "$package_dir" >"$begin"
   cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2 || code=$?
+  if [ $code -eq 0 ] && { [ ${#targets[@]} -eq 0 ] || [ "${targets[0]}" = all ]; }; then
+    mv "$begin" "$built_stamp"
+  fi
   exec {lock}>&-
   return $code
 }

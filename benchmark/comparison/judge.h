@@ -3,7 +3,7 @@
  * @file judge.h
  * @brief What "solved" means, the same for both sides: judged from W, q, mu and the impulses alone.
  *
- *   RESIDUAL   E <= value, E of VERIFICATION.md section 2 by test/support/validator (shares no code with the solvers)
+ *   RESIDUAL   E <= value, E of docs/residuals.md by test/support/validator.h (shares no code with the solvers)
  *   THESIS     1/(2 n d) |f_AC(u, r)|^2 < value with rho = 1, Cadoux (2009), (5.1), f_AC of (1.23), (1.24); Coulomb
  * only
  */

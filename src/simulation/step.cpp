@@ -1,4 +1,4 @@
-// One time step, in the order of DESIGN.md.
+// One time step, in the order of docs/architecture.md.
 #include <algorithm>
 #include <cmath>
 #include <exception>

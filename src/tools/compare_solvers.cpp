@@ -1,6 +1,6 @@
 /**
  * @file compare_solvers.cpp
- * @brief Command compare_solvers: solves every file of a list with every solver of a list and writes one CSV row each.
+ * @brief compare_solvers FILE_OR_FOLDER...: solves every file with every solver of a list, writes one CSV row each.
  * Exit 0 all converged, 1 a solve did not, 2 bad input (a bad file among good ones: its row says BAD_INPUT, the others
  * are done).
  */

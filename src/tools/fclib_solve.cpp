@@ -1,6 +1,6 @@
 /**
  * @file fclib_solve.cpp
- * @brief Command fclib_solve: solves one FCLib file and reports. INTERFACES.md, section 3.
+ * @brief fclib_solve FILE.hdf5: solves one friction problem in FCLib format and reports (docs/interfaces.md).
  * Exit 0 converged, 1 not converged, 2 bad input.
  */
 #include <algorithm>

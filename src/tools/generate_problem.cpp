@@ -1,7 +1,7 @@
 /**
  * @file generate_problem.cpp
- * @brief Command generate_problem: writes problems of the random and rigid families as FCLib files, whose info names
- * the family, every parameter and the verdict on existence (problem/existence.h). Exit 0 written, 2 bad input.
+ * @brief generate_problem FAMILY OUT.hdf5: writes problems of the random and rigid families as FCLib files.
+ * Their info names family, parameters and the verdict on existence (problem/existence.h). Exit 0 written, 2 bad input.
  */
 #include <cstdio>
 #include <filesystem>

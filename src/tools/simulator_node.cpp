@@ -1,6 +1,6 @@
 /**
  * @file simulator_node.cpp
- * @brief The ROS node: parameters, topics and services are listed in README.md.
+ * @brief The ROS node: parameters, topics and services are listed in docs/interfaces.md.
  */
 #include "frictional_contact_sim/ros/simulator_node.h"
 

@@ -1,4 +1,4 @@
-// Further closed forms of VERIFICATION.md, section 3: rolling, spinning, oblique impacts, grasps.
+// Further closed forms: rolling, spinning, oblique impacts, grasps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -197,7 +197,7 @@ TEST(PinchGraspTest, HeldCubeDoesNotCreep)
     ASSERT_EQ(report.status, SolverStatus::CONVERGED) << "step " << i << " residual " << report.residual;
     creep = std::max(creep, simulator.velocity(1).norm());
   }
-  EXPECT_LT(creep, 1e-9);  // [m/s], VERIFICATION.md; MuJoCo 2.2.2 creeps at 1.2e-3
+  EXPECT_LT(creep, 1e-9);  // [m/s]; MuJoCo 2.2.2 creeps at 1.2e-3
   EXPECT_NEAR(simulator.position(1)[2], 0.4, 1e-9);
   for (const ContactState& contact : simulator.contacts())
     EXPECT_NE(contact.mode, ContactMode::SLIDING);

@@ -1,4 +1,4 @@
-// Impacts and rest: restitution, energy, stacks (VERIFICATION.md, section 3).
+// Impacts and rest: restitution, energy, stacks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -136,7 +136,7 @@ TEST(RestingBoxTest, EverySampleOfTheForceIsTheWeight)
 
 TEST(RestingBoxTest, WarmStartNeedsNoIterations)
 {
-  // VERIFICATION.md, section 2, trap: other codes stall a hair above the tolerance here. Velocities below the tolerance
+  // Other codes stall a hair above the tolerance here. Velocities below the tolerance
   // (1e-10 m/s) move the box by 1e-13 m until the gap rows notice, after some 340 steps; then one iteration puts it
   // right.
   Scenario scene = groundScene(0.8);

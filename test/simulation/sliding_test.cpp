@@ -1,4 +1,4 @@
-// Blocks that slide, stick and tip: Coulomb's law against closed forms (VERIFICATION.md, section 3).
+// Blocks that slide, stick and tip: Coulomb's law against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

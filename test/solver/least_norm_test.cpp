@@ -22,7 +22,7 @@ using namespace frictional_contact_sim::test_support;
 namespace
 {
 constexpr double THRESHOLD = 1e-9;
-/// Of r, relative: what DESIGN.md calls exact. Found: 1e-14 to 1e-11.
+/// Of r, relative: to round-off, docs/residuals.md. Found: 1e-14 to 1e-11.
 constexpr double EXACT = 1e-10;
 
 struct Case

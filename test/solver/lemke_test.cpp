@@ -96,7 +96,7 @@ TEST(PrincipalPivotingTest, VanishingDiagonalNeedsTheTwoByTwoPivot)
 
 TEST(LcpLemkeTest, MatrixIsThatOfTheThesis)
 {
-  // One contact: A of METHODS.md section 2.
+  // One contact: A of solver/lcp_lemke.h.
   Eigen::Matrix2d W;
   W << 2.0, 0.5, 0.5, 3.0;
   const DelassusProblem problem = localProblem(W, Eigen::Vector2d(-1, 4), {{LawType::COULOMB_2D, 0.4}});

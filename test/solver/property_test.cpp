@@ -1,8 +1,8 @@
 /**
  * @file property_test.cpp
- * @brief What any exact solver of the problem must respect, on random problems with fixed seeds (VERIFICATION.md,
- * section 4). Velocities are compared where they are unique: little friction, or none. The tolerance 1e-11 on E lets v
- * move by that times the condition of the problem, below 1e3 here.
+ * @brief What any exact solver of the problem must respect, on random problems with fixed seeds
+ * (docs/residuals.md). Velocities are compared where they are unique: little friction, or none. The tolerance 1e-11 on
+ * E lets v move by that times the condition of the problem, below 1e3 here.
  */
 #include <gtest/gtest.h>
 

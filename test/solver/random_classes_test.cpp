@@ -1,6 +1,6 @@
 /**
  * @file random_classes_test.cpp
- * @brief VERIFICATION.md, section 4: classes of random problems with fixed seeds by every method. CONVERGED only where
+ * @brief Classes of random problems with fixed seeds by every method. CONVERGED only where
  * the independent validator confirms it; the portfolio has to solve the classes it is meant for.
  */
 #include <gtest/gtest.h>

@@ -81,7 +81,7 @@ std::uint64_t idNumber(const Id& id)
   }
 }
 
-/** The order of src/simulation/state_hash.cpp at d0e72fa. */
+/** The order of the state hash at d0e72fa. */
 void addAll(const fcs::Simulator& simulator, Hash& hash)
 {
   for (int body = 0; body < simulator.bodyCount(); ++body)

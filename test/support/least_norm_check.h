@@ -9,7 +9,7 @@
  * N spans the null space of G (dense, SVD). Any z gives a bound, so that whatever the ascent reaches is a certificate;
  * `gap` tells how good it is. Shares no code with math, problem or solver: dense SVD of M, G and B instead of a sparse
  * factor, accelerated gradient steps instead of Newton's, the projection from the angle in the plane of the argument.
- * VERIFICATION.md, section 2, item 2: at most twice the least sum, in every step of every hyperstatic scene.
+ * docs/residuals.md, "Which forces": at most twice the least sum, in every step of every hyperstatic scene.
  */
 #include "frictional_contact_sim/problem/incremental_problem.h"
 

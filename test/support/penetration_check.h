@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file penetration_check.h
- * @brief The independent penetration check of VERIFICATION.md, section 2: corners, edges and a dense sample of the
+ * @brief The independent penetration check of docs/residuals.md: corners, edges and a dense sample of the
  * surface of every collision shape against the solid of every other one and against the ground, at end poses.
  *
  * Shares no code with the narrow phase or the manifolds of collision/ (convex_solid.h). Left out, as the world leaves

@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file run_audit.h
- * @brief The invariants of ../shared/tools/audit_robots.py and VERIFICATION.md as one object that looks at a simulator
+ * @brief The invariants of a run (docs/residuals.md) as one object that looks at a simulator
  * after every step and says at the end, in lines to read, what was wrong.
  *
  * | kind        | every step                                                                                     |

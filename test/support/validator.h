@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file validator.h
- * @brief A second opinion on every answer: VERIFICATION.md, section 2, item 1, computed densely and from scratch.
+ * @brief A second opinion on every answer: E of docs/residuals.md, computed densely and from scratch.
  *
  * Shares no code with math, problem or solver: reads only (M, f, H, w, laws, G, b, v, r, lambda) or (W, q, laws, r).
  * The projection on the cone is found by minimising along the boundary ray in the plane of the argument instead of by

@@ -1,6 +1,6 @@
 /**
  * @file fclib_solve_test.cpp
- * @brief The command fclib_solve from outside: exit codes, output, files, bad input (INTERFACES.md, section 3).
+ * @brief The command fclib_solve from outside: exit codes, output, files, bad input (docs/interfaces.md).
  */
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -7,7 +7,7 @@
  *
  *     tau = kp (q_d - q') + kd (v_d - v_k+1),      q' = q_k + dt/4 (v_k + v_k+1)
  *
- * stiffness at the midpoint, damping at the end of the step (DESIGN.md, "The time step"). Over the step this is linear
+ * stiffness at the midpoint, damping at the end of the step (docs/architecture.md). Over the step this is linear
  * in the unknown velocity:  dt tau = c - K v_k+1  with
  *
  *     K = dt^2/4 kp + dt kd   [kg] or [kg m^2],        c = dt (kp (q_d - q_k - dt/4 v_k) + kd v_d)   [N s] or [N m s]

@@ -9,7 +9,7 @@
  *   gap >= 0                                                                      u_N >= -gap/dt
  *   gap < 0                                                                       u_N >= min(-gap/dt, v_recover)
  *
- * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (DESIGN.md, "The time step"). The thesis's
+ * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (docs/architecture.md). The thesis's
  * plain velocity law (Cadoux 2009, 1.1.5 and 2.2: u_N + e u_old >= 0 where gap <= 0, nothing else) stays selectable.
  */
 namespace frictional_contact_sim

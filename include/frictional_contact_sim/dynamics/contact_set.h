@@ -25,8 +25,8 @@
  *
  * What may go through is 1e-9 of the size of the smaller shape, a hundred times more in each of two rounds after the
  * second (crossing edges converge by a factor of 4 a round, no more); after
- * 10 rounds a trace of 1e-4 of the size is left to the next step, more than that is a failed step. Source:
- * ../shared/DESIGN.md, "Nothing goes through".
+ * 10 rounds a trace of 1e-4 of the size is left to the next step, more than that is a failed step. See
+ * docs/residuals.md, "Nothing goes through".
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>

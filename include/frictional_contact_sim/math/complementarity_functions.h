@@ -9,7 +9,7 @@
  *   dry friction phi(r + c, -phi(c - r, -u))                              -c <= r <= c, u = 0 inside, else u opposite
  *
  * alpha > 0 smooths every phi. Zero with alpha = 0 exactly where (u, r) is in the law.
- * Source: Cadoux (2009), (4.11) and the scaling of METHODS.md section 2; Billups (1995) for the box.
+ * Source: Cadoux (2009), (4.11), K_mu scaled to the Lorentz cone; Billups (1995) for the box.
  */
 #include "frictional_contact_sim/math/contact_functions.h"
 #include "frictional_contact_sim/math/jordan_algebra.h"

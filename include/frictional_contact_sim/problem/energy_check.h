@@ -7,9 +7,9 @@
  *
  * since r.u = 1/2 v'Mv + 1/2 (v - v_free)'M(v - v_free) - 1/2 v_free'M v_free + r.w + lambda.b with v_free = -M^-1 f:
  * of exact answers r_N u_N = 0 and r_T.u_T <= 0. Errors within the residual's tolerance t leave about t S sum |r_i|;
- * the residual alone lets through what a self-stress makes of them. Source: ../shared/VERIFICATION.md, section 2.
+ * the residual alone lets through what a self-stress makes of them. See docs/residuals.md.
  *
- * It departs from it in one thing: where 10 t E_0 is exceeded, the energy of the answer, 1/2 v'Mv, counts as well. A
+ * Where 10 t E_0 is exceeded, the energy of the answer, 1/2 v'Mv, counts as well. A
  * body at rest without gravity that a prescribed base hits has E_0 = 0 and an answer with energy; created energy is
  * part of 1/2 v'Mv itself, so that a share of 10 t of it remains the most that passes.
  *

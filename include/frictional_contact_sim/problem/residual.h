@@ -22,7 +22,7 @@
  * Beside it, for comparison with others:
  *   siconos_error    |r - P_K(r - u~)|_2 / max(|q|_2, |r|_2, |u|_2)   (rho = 1)
  *   natural_map_1q   |r - P_K(r - u~)|_2 / (1 + |q|_2)
- * Source: VERIFICATION.md section 2; Acary, Bremond, Huber (2018) for the natural map.
+ * See docs/residuals.md; Acary, Bremond, Huber (2018) for the natural map.
  */
 #include <Eigen/Core>
 

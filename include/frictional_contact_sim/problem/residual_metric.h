@@ -14,7 +14,7 @@
  * self-stress of 1e8 N passed for an answer. Nor do other islands, in a simulation: an island's bits are its own.
  *
  * Why S_0 is not left to q: dry friction of a robot in free fall has q = round-off, and so have its joints' own shares
- * of M^-1 dt (bias - applied); only the bodies' speed, g dt, says what matters. Source: VERIFICATION.md, section 2.
+ * of M^-1 dt (bias - applied); only the bodies' speed, g dt, says what matters. See docs/residuals.md.
  */
 #include <Eigen/Core>
 #include <vector>

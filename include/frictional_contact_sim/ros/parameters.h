@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file parameters.h
- * @brief The node's private parameters as one struct; a pure function reads and checks them (README lists them all).
+ * @brief The node's private parameters as one struct; a pure function reads and checks them (docs/interfaces.md).
  */
 #include <cstdint>
 #include <limits>

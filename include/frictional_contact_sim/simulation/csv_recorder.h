@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file csv_recorder.h
- * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder (INTERFACES.md, section 3).
+ * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder (docs/interfaces.md).
  *
  * Contact columns: force is impulse / dt in world axes, on body_a [N]; velocity is of a relative to b [m/s].
  */

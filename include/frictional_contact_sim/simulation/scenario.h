@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file scenario.h
- * @brief What is simulated, as data: the content of a scenario file (../shared INTERFACES section 4) and the defaults
+ * @brief What is simulated, as data: the content of a scenario file (docs/interfaces.md) and the defaults
  * that the node's parameters share with it.
  */
 #include <Eigen/Core>

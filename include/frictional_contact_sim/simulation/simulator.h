@@ -35,7 +35,7 @@ public:
   ~Simulator();
 
   /**
-   * @brief One time step (DESIGN.md, "The time step"), all or nothing: CONVERGED with residual and energy within their
+   * @brief One time step (docs/architecture.md), all or nothing: CONVERGED with residual and energy within their
    * bounds, or another status and a reason, and the failure policy says what is left (simulation/failure.h). Nothing is
    * thrown. No allocation after warm-up while contacts persist.
    */
@@ -77,7 +77,7 @@ public:
   /** @brief Effort of a joint's drive over the last step, after saturation [N m] or [N]. */
   double effort(int body, int joint) const;
   /**
-   * @brief After a position or velocity was written: impact solve at q (DESIGN.md), warm starts dropped, ledger anew.
+   * @brief After a position or velocity was written: impact solve at q, warm starts dropped, ledger anew.
    * Where that fails the failure policy says what is left: under STOP and PAUSE, and whenever a number is not finite,
    * the state goes back to the one before anything was written.
    */

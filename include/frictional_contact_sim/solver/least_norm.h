@@ -29,7 +29,7 @@
  * What it does to E: an r_i in K_mu has a natural map error of at most (1 + mu) threshold, one on a ray that of r*_i
  * times |r_i|/|r*_i|. So a threshold of tolerance times S / (1 + mu) keeps an answer an answer.
  *
- * Source: DESIGN.md, "Forces that are not unique"; Qi and Sun (1993) for semismooth Newton; Rockafellar (1970), section
+ * See docs/residuals.md, "Which forces"; Qi and Sun (1993) for semismooth Newton; Rockafellar (1970), section
  * 31, for the dual.
  */
 #include <Eigen/Core>

@@ -20,7 +20,7 @@ struct SolverEntry
   OperatorUse uses;  ///< what it needs of W, as create()->operatorUse() says
 };
 
-/** @brief All methods, in the order of the README's table. */
+/** @brief All methods, in the order of docs/interfaces.md. */
 const std::vector<SolverEntry>& solverRegistry();
 
 /** @throws std::invalid_argument on an unknown name; the message lists the valid ones. */

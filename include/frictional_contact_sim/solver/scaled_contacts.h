@@ -10,7 +10,7 @@
  *
  * (u, r) is in its law exactly when (c, z) is in the scaled one: S maps K_mu to K_mu' and S^-1 the duals, and
  * S^-1 (u + mu |u_T| e) = c + mu' |c_T| e. Nothing is copied but diagonals; W is only applied.
- * Source: VERIFICATION.md section 5, on the choice of rho; a diagonal change of metric in Cadoux (2009), (4.8).
+ * Source: Acary, Bremond, Huber (2018) on the choice of rho; a diagonal change of metric in Cadoux (2009), (4.8).
  */
 #include <Eigen/Core>
 #include <vector>

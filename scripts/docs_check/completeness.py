@@ -1,0 +1,38 @@
+"""docs/interfaces.md names all that the code offers: parameters, topics, services, scenario keys, programs, options."""
+import pathlib
+import re
+
+PAGE = pathlib.Path('docs/interfaces.md')
+READ = re.compile(r'\b(?:has|child|raw|isStruct|isList|read\w*|fail)\(\s*(?:\w+,\s*)?"(\w+)"')
+ADVERTISED = re.compile(r'\b(?:advertise\w*(?:<[^;"]*>)?|subscribe\w*(?:<[^;"]*>)?|empty|add)\(\s*"([\w/]+)"')
+KEY_LIST = re.compile(r'expectMap\(\{([^}]*)\}')
+# Kind, files, names in them, and how many there are at least: a reader that is written anew must not escape the check.
+SOURCES = [
+    ('parameter', 'src/ros/param*.cpp', lambda text: READ.findall(text), 30),
+    ('topic or service', 'src/ros/*.cpp', lambda text: ADVERTISED.findall(text), 15),
+    ('key of a scenario', 'src/simulation/scenario*.cpp',
+     lambda text: READ.findall(text) + [key for keys in KEY_LIST.findall(text) for key in re.findall(r'"(\w+)"', keys)], 40),
+]
+DOCUMENTED = ['run_scenario', 'fclib_solve', 'compare_solvers', 'rolling_contact', 'simulator_node', 'record_bag']  # their options
+
+
+def check(repo):
+    page = repo.text(PAGE)
+    found = [(PAGE, 1, f'no word of the program {path.stem}') for path in repo.paths()
+             if str(path.parent) == 'src/tools' and path.suffix == '.cpp' and not names(page, path.stem)]
+    for kind, pattern, extract, least in SOURCES:
+        offered = {name for path in sorted(repo.root.glob(pattern)) for name in extract(path.read_text())}
+        if len(offered) < least:
+            found.append((PAGE, 1, f'{len(offered)} names of kind {kind} found in {pattern}, expected {least} at least: '
+                                   'scripts/docs_check/completeness.py looks for them wrongly'))
+        found += [(PAGE, 1, f'no word of the {kind} {name}') for name in sorted(offered) if not names(page, name.rstrip('/'))]
+    everywhere = '\n'.join(repo.text(path) for path in repo.documents() if path.suffix == '.md')
+    for program in DOCUMENTED:
+        options = (repo.options(program, []) or set()) - {'--help'}
+        found += [(PAGE, 1, f'no word of the option {option} of {program}') for option in sorted(options)
+                  if not re.search(rf'(?<![\w-]){option}(?![\w-])', everywhere)]
+    return found
+
+
+def names(page, name):
+    return re.search(rf'(?<![\w/]){re.escape(name)}(?!\w)', page)
