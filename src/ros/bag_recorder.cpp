@@ -13,7 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <stdexcept>
+#include <limits>
 
 #include "frictional_contact_sim/ros/delivery.h"
 #include "frictional_contact_sim/ros/end_request.h"
@@ -53,15 +53,10 @@ bool exists(const std::string& file)
   return access(file.c_str(), F_OK) == 0;
 }
 
-int record(const std::string& file, const std::vector<std::string>& topics)
+int record(ros::NodeHandle& node, const std::string& file, const std::vector<std::string>& topics)
 {
   // A limit on the size of files is an error of the write, not the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
-  if (!waitForMaster())
-    return SUCCESS;
-  ros::NodeHandle node;
-  if (endRequested())
-    return SUCCESS;
   BagRecorder recorder(node, file, topics);
   endInOrder();
   ros::CallbackQueue& queue = *ros::getGlobalCallbackQueue();
@@ -173,14 +168,11 @@ bool BagRecorder::close()
 
 int runBagRecorder(int argc, char** argv)
 {
-  return runProgram(
-      {"record_bag", HELP}, argc, argv, ros::init_options::AnonymousName,
-      [](const std::vector<std::string>& arguments)
-      {
-        if (arguments.size() < 2)
-          throw std::invalid_argument("expected OUTPUT.bag and at least one topic: see record_bag --help");
-        return record(arguments[0], {arguments.begin() + 1, arguments.end()});
-      });
+  const size_t any = std::numeric_limits<size_t>::max();
+  return runProgram({"record_bag", HELP, 2, any}, argc, argv, ros::init_options::AnonymousName,
+                    [](ros::NodeHandle& node, const std::vector<std::string>& arguments) {
+                      return record(node, arguments[0], {arguments.begin() + 1, arguments.end()});
+                    });
 }
 
 }  // namespace frictional_contact_sim

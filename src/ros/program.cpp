@@ -24,7 +24,7 @@ bool asks(const std::vector<std::string>& arguments, std::initializer_list<const
 }  // namespace
 
 int runProgram(const ProgramInfo& info, int argc, char** argv, std::uint32_t init_options,
-               const std::function<int(const std::vector<std::string>&)>& run)
+               const std::function<int(ros::NodeHandle&, const std::vector<std::string>&)>& run)
 {
   std::vector<std::string> arguments;
   ros::removeROSArgs(argc, argv, arguments);
@@ -39,6 +39,12 @@ int runProgram(const ProgramInfo& info, int argc, char** argv, std::uint32_t ini
     std::printf("%s %s\n", info.name.c_str(), FRICTIONAL_CONTACT_SIM_VERSION);
     return SUCCESS;
   }
+  if (arguments.size() < info.fewest_arguments || arguments.size() > info.most_arguments)
+  {
+    std::fprintf(stderr, "%s: found %zu arguments%s: see %s --help\n", info.name.c_str(), arguments.size(),
+                 arguments.empty() ? "" : (", '" + arguments.front() + "' ...").c_str(), info.name.c_str());
+    return BAD_INPUT;
+  }
   try
   {
     ros::init(argc, argv, info.name, init_options | ros::init_options::NoSigintHandler);
@@ -49,9 +55,12 @@ int runProgram(const ProgramInfo& info, int argc, char** argv, std::uint32_t ini
     return BAD_INPUT;
   }
   endOnSignals();
+  if (!waitForMaster())
+    return SUCCESS;
+  ros::NodeHandle node;  // outlives what is caught: the last one closes the log
   try
   {
-    return run(arguments);
+    return endRequested() ? SUCCESS : run(node, arguments);
   }
   catch (const std::exception& error)
   {

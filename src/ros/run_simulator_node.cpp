@@ -25,14 +25,8 @@ std::string findRobotDescription(ros::NodeHandle& node, ros::NodeHandle& private
   return found ? static_cast<std::string>(value) : std::string();
 }
 
-int simulate(const std::vector<std::string>& arguments)
+int simulate(ros::NodeHandle& node)
 {
-  if (!arguments.empty())
-    throw std::invalid_argument("found the argument '" + arguments[0] +
-                                "', expected none but _parameter:=value and topic:=name: see simulator_node --help");
-  if (!waitForMaster())
-    return SUCCESS;
-  ros::NodeHandle node;
   ros::NodeHandle private_node("~");
   XmlRpc::XmlRpcValue tree;
   private_node.getParam(ros::this_node::getName(), tree);
@@ -47,7 +41,9 @@ int simulate(const std::vector<std::string>& arguments)
 
 int runSimulatorNode(int argc, char** argv)
 {
-  return runProgram({"simulator_node", nodeHelp()}, argc, argv, 0, simulate);
+  return runProgram(
+      {"simulator_node", nodeHelp()}, argc, argv, 0,
+      [](ros::NodeHandle& node, const std::vector<std::string>&) { return simulate(node); });
 }
 
 }  // namespace frictional_contact_sim

@@ -34,7 +34,7 @@ bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, 
     done = client.executeCheckDone(response);
   }
   dispatch.removeSource(&client);
-  return done && !client.isFault();
+  return done && !client.isFault() && response.valid();
 }
 
 /** @brief Element of a list, else an invalid value. */

@@ -4,6 +4,8 @@
  * @brief The frame of a program that is a ROS node: --help and --version without a master, bad names and every
  * exception as one line, signals.
  */
+#include <ros/node_handle.h>
+
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -20,14 +22,17 @@ struct ProgramInfo
 {
   std::string name;  ///< of the node too, unless it is remapped
   std::string help;
+  size_t fewest_arguments = 0;
+  size_t most_arguments = 0;
 };
 
 /**
  * @param init_options of ros::init, besides NoSigintHandler
- * @param run is given the arguments without ROS's own (name:=value); it looks at endRequested()
+ * @param run is called when the master answers, with the arguments but ROS's own (name:=value); it looks at
+ * endRequested()
  * @return run's exit code; BAD_INPUT after an exception, with one line
  */
 int runProgram(const ProgramInfo& info, int argc, char** argv, std::uint32_t init_options,
-               const std::function<int(const std::vector<std::string>&)>& run);
+               const std::function<int(ros::NodeHandle&, const std::vector<std::string>&)>& run);
 
 }  // namespace frictional_contact_sim
