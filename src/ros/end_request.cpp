@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/master.h>
+#include <ros/xmlrpc_manager.h>
 
 #include <csignal>
 
@@ -47,6 +48,14 @@ void endOnSignals()
 void endInOrder()
 {
   in_order = true;
+  // rosnode kill, or a new node of this name: as a signal, where roscpp would close the connections at once.
+  ros::XMLRPCManager::instance()->unbind("shutdown");
+  ros::XMLRPCManager::instance()->bind("shutdown",
+                                       [](XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result)
+                                       {
+                                         end_requested = true;
+                                         result = ros::xmlrpc::responseInt(1, "", 0);
+                                       });
 }
 
 const std::atomic<bool>& endRequested()

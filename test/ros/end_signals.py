@@ -111,10 +111,18 @@ class EndSignalsTest(unittest.TestCase):
         for number in SIGNALS:
             with self.subTest(number.name):
                 node = node_runner.Node({"scenario": scenario, "real_time_factor": 0.0})
+                self.addCleanup(node.process.kill)
                 rospy.wait_for_service(node_runner.NAME + "/step", node_runner.TIMEOUT)
                 time.sleep(2.0)
                 self.assertIsNone(node.process.poll(), node.stderr())
                 self.assertEqual(0, self.end(node.process, number), node.stderr())
+
+        node = node_runner.Node({"scenario": scenario, "real_time_factor": 0.0})
+        self.addCleanup(node.process.kill)
+        rospy.wait_for_service(node_runner.NAME + "/step", node_runner.TIMEOUT)
+        time.sleep(2.0)
+        subprocess.run(["rosnode", "kill", node_runner.NAME], stdout=subprocess.DEVNULL, timeout=LIMIT, check=True)
+        self.assertEqual(0, node.wait(LIMIT), node.stderr())
 
     def test_a_second_signal_ends_it_at_once(self):
         for number in SIGNALS:
@@ -122,6 +130,7 @@ class EndSignalsTest(unittest.TestCase):
                 # At its end the node waits for a subscriber that does not answer, for two minutes.
                 node = node_runner.Node({"lossless_topics": ["joint_states"], "hold_limit": 120.0},
                                         node_runner.box_urdf())
+                self.addCleanup(node.process.kill)
                 rospy.wait_for_service(node_runner.NAME + "/step", node_runner.TIMEOUT)
                 subscriber = RawSubscriber("/hangs", "/joint_states", hang, delay=None)
                 node.process.send_signal(signal.SIGINT)
