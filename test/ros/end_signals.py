@@ -133,6 +133,7 @@ class EndSignalsTest(unittest.TestCase):
                 self.addCleanup(node.process.kill)
                 rospy.wait_for_service(node_runner.NAME + "/step", node_runner.TIMEOUT)
                 subscriber = RawSubscriber("/hangs", "/joint_states", hang, delay=None)
+                time.sleep(1.0)  # something is sent to it
                 node.process.send_signal(signal.SIGINT)
                 time.sleep(3.0)
                 self.assertIsNone(node.process.poll(), node.stderr())

@@ -22,7 +22,7 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-constexpr double MAX_TRAVEL = 1000.0;  ///< [rad] or [m]
+constexpr double MAX_TRAVEL = 50.0;  ///< [rad] or [m]
 constexpr double MAX_EFFORT = 1e9;  ///< [N m] or [N]
 
 /** @brief Index into NameTable::joints and the target there. */
