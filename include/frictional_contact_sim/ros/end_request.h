@@ -10,7 +10,8 @@ namespace frictional_contact_sim
 /** @brief After ros::init with NoSigintHandler. Until endInOrder() a signal shuts ROS down, so that nothing waits on.
  */
 void endOnSignals();
-/** @brief From now on a signal, or rosnode kill, only sets the flag: the caller looks at it, sends what has to be sent, and returns. */
+/** @brief From now on a signal, or rosnode kill, only sets the flag: the caller looks at it, sends what has to be sent,
+ * and returns. */
 void endInOrder();
 /** @brief Set by the first signal; lives as long as the process. */
 const std::atomic<bool>& endRequested();
