@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace frictional_contact_sim
 {
@@ -54,6 +55,28 @@ JointTargets orderedTargets(const NameTable& names, const std::vector<double>& v
     targets.emplace_back(names.actuated[i], values[i]);
   }
   return targets;
+}
+
+std::optional<std::string> clampTarget(const Joint& joint, const std::string& name, JointCommand::Mode mode,
+                                       double position, double& target)
+{
+  double lower = -std::min(joint.limit.effort, MAX_EFFORT);
+  double upper = -lower;
+  if (mode == JointCommand::Mode::POSITION)
+  {
+    // A joint beyond its limits may still be sent back to them.
+    lower = std::min(std::max(joint.limit.lower, position - MAX_TRAVEL), joint.limit.upper);
+    upper = std::max(std::min(joint.limit.upper, position + MAX_TRAVEL), joint.limit.lower);
+  }
+  if (target >= lower && target <= upper)
+    return std::nullopt;
+  const bool above = target > upper;
+  target = above ? upper : lower;
+  std::ostringstream line;
+  line << "joint '" << name << "': the command is " << (above ? "above " : "below ")
+       << (above ? "the largest" : "the smallest") << (mode == JointCommand::Mode::POSITION ? " position" : " effort")
+       << " it can be given now, " << target << ", which is taken";
+  return line.str();
 }
 
 JointCommand positionCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains)

@@ -90,6 +90,12 @@ std::uint8_t toMessage(SolverStatus status)
 
 }  // namespace
 
+double impulseTime(const Simulator& simulator)
+{
+  const double dt = simulator.report().dt;
+  return dt > 0.0 ? dt : simulator.scenario().time_step;
+}
+
 ros::Time toStamp(double seconds)
 {
   ros::Time stamp;
@@ -124,7 +130,7 @@ void fillContacts(const Simulator& simulator, const NameTable& names, const ros:
 {
   fillHeader(stamp, message.header);
   const std::vector<ContactState>& contacts = simulator.contacts();
-  const double dt = simulator.report().dt;
+  const double dt = impulseTime(simulator);
   message.contacts.resize(contacts.size());
   for (size_t i = 0; i < contacts.size(); ++i)
   {

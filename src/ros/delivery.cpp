@@ -1,58 +1,30 @@
 #include "frictional_contact_sim/ros/delivery.h"
 
+#include <ros/console.h>
 #include <ros/init.h>
-#include <ros/master.h>
-#include <ros/network.h>
 #include <ros/poll_manager.h>
-#include <ros/this_node.h>
-#include <xmlrpcpp/XmlRpc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
 namespace frictional_contact_sim
 {
-using XmlRpc::XmlRpcClient;
-using XmlRpc::XmlRpcValue;
+const char* const LOSSLESS_NODES_TOPIC = "/lossless_nodes";
 
 namespace
 {
-constexpr double CALL_TIMEOUT = 0.5;  // [s]
-constexpr double CALL_SLICE = 0.02;  // between two looks at a shutdown [s]
+constexpr double PATIENCE = 1.0;  // at the end, with subscribers that may lose messages and do not read on [s]
 
-/** @brief A call that neither hangs on a stopped node nor keeps a shutdown waiting. */
-bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, XmlRpcValue& response)
+double seconds()
 {
-  if (!client.executeNonBlock(method, request))
-    return false;
-  XmlRpc::XmlRpcDispatch dispatch;
-  dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  bool done = false;
-  for (double waited = 0.0; ros::ok() && !done && waited < CALL_TIMEOUT; waited += CALL_SLICE)
-  {
-    dispatch.work(CALL_SLICE);
-    done = client.executeCheckDone(response);
-  }
-  dispatch.removeSource(&client);
-  return done && !client.isFault();
-}
-
-/** @brief [topic, [[connection, bytes, messages, drops, ...], ...]] of getBusStats: sum of one column. */
-int sumColumn(XmlRpcValue& connections, int column)
-{
-  int sum = 0;
-  for (int i = 0; connections.getType() == XmlRpcValue::TypeArray && i < connections.size(); ++i)
-  {
-    XmlRpcValue& connection = connections[i];
-    if (connection.size() > column && connection[column].getType() == XmlRpcValue::TypeInt)
-      sum += static_cast<int>(connection[column]);
-  }
-  return sum;
+  return ros::WallTime::now().toSec();
 }
 
 }  // namespace
 
-DeliveryMonitor::DeliveryMonitor(std::set<std::string> topics) : topics_(std::move(topics))
+DeliveryMonitor::DeliveryMonitor(std::set<std::string> topics, std::set<std::string> lossless_topics, double hold_limit)
+  : topics_(std::move(topics)), lossless_topics_(std::move(lossless_topics)), hold_limit_(hold_limit)
 {
   poll_listener_ = ros::PollManager::instance()->addPollThreadListener([this] { ++poll_cycles_; });
 }
@@ -60,6 +32,11 @@ DeliveryMonitor::DeliveryMonitor(std::set<std::string> topics) : topics_(std::mo
 DeliveryMonitor::~DeliveryMonitor()
 {
   ros::PollManager::instance()->removePollThreadListener(poll_listener_);
+}
+
+void DeliveryMonitor::addLosslessNode(const std::string& node)
+{
+  lossless_nodes_.insert(node);
 }
 
 /**
@@ -76,120 +53,117 @@ void DeliveryMonitor::flushPublishQueues()
   }
 }
 
-const std::map<std::string, int>& DeliveryMonitor::dropped() const
+const std::map<std::string, std::int64_t>& DeliveryMonitor::dropped() const
 {
   return dropped_;
 }
 
-/** @brief Value of an answer: [1, "", value] by the slave API, but roscpp answers getBusStats with the value alone. */
-bool DeliveryMonitor::ask(const std::string& node, const char* method, XmlRpcValue& value)
+/** @brief The part of what was sent to a node that may hold the run. */
+MessageCounts DeliveryMonitor::lossless(const std::string& node, const MessageCounts& sent) const
 {
-  XmlRpcClient* remote = client(node);
-  XmlRpcValue request;
-  XmlRpcValue response;
-  request[0] = ros::this_node::getName();
-  if (remote == nullptr || !call(*remote, method, request, response) || response.getType() != XmlRpcValue::TypeArray ||
-      response.size() < 2)
+  MessageCounts counts;
+  if (given_up_.count(node) == 0)
+    for (const auto& [topic, count] : sent)
+      if (topics_.count(topic) > 0 && (lossless_nodes_.count(node) > 0 || lossless_topics_.count(topic) > 0))
+        counts[topic] = count;
+  return counts;
+}
+
+DeliveryMonitor::Delivery DeliveryMonitor::look(const std::string& node, const MessageCounts& sent)
+{
+  Delivery delivery;
+  SubscriptionCounts counts;
+  if (const std::optional<XmlRpc::XmlRpcValue> answer = nodes_.ask(node, "getBusStats"))
   {
-    clients_.erase(node);
+    delivery.answered = true;
+    counts = readSubscriptions(*answer);
+  }
+  for (const auto& [topic, count] : sent)
+  {
+    delivery.received += counts.received[topic];
+    delivery.missing += std::max<std::int64_t>(0, count - counts.received[topic]);
+    if (counts.dropped[topic] > 0)
+      dropped_[node + " " + topic] = counts.dropped[topic];
+  }
+  return delivery;
+}
+
+void DeliveryMonitor::giveUp(const std::string& node, const Delivery& delivery)
+{
+  given_up_.insert(node);
+  if (delivery.answered)
+    ROS_WARN_STREAM(node << " lacks " << delivery.missing << " messages that were sent to it " << hold_limit_
+                         << " s ago (~hold_limit): they are lost, and the run waits for it no more");
+  else
+    ROS_WARN_STREAM(node << " does not say what it has received (getBusStats), for " << hold_limit_
+                         << " s (~hold_limit): the run waits for it no more");
+}
+
+bool DeliveryMonitor::lagging(double waited)
+{
+  if (lossless_topics_.empty() && lossless_nodes_.empty())
     return false;
-  }
-  value = response[0].getType() == XmlRpcValue::TypeInt ? response[2] : response;
-  return true;
-}
-
-/** @brief getBusInfo: [connection, node, direction, transport, topic, ...] of every connection. */
-void DeliveryMonitor::readConnections()
-{
-  XmlRpcValue info;
-  connections_.clear();
-  if (!ask(ros::this_node::getName(), "getBusInfo", info))
-    return;
-  for (int i = 0; info.getType() == XmlRpcValue::TypeArray && i < info.size(); ++i)
-    connections_[static_cast<int>(info[i][0])] = static_cast<std::string>(info[i][1]);
-}
-
-bool DeliveryMonitor::sentCounts(std::map<std::string, Counts>& sent)
-{
-  // getBusStats' first part, the publications: [topic, [[connection, bytes, bytes, messages, ...], ...]]
-  XmlRpcValue stats;
-  if (!ask(ros::this_node::getName(), "getBusStats", stats))
-    return false;
-  XmlRpcValue& publications = stats[0];
-  for (int i = 0; publications.getType() == XmlRpcValue::TypeArray && i < publications.size(); ++i)
+  const std::optional<std::map<std::string, MessageCounts>> sent_by_node = nodes_.sentMessages();
+  if (!sent_by_node)
+    return waited < hold_limit_;
+  for (const auto& [node, all] : *sent_by_node)
   {
-    const std::string topic = publications[i][0];
-    XmlRpcValue& connections = publications[i][1];
-    for (int k = 0;
-         topics_.count(topic) > 0 && connections.getType() == XmlRpcValue::TypeArray && k < connections.size(); ++k)
-    {
-      const int connection = connections[k][0];
-      if (connections_.count(connection) == 0)
-        readConnections();
-      const std::string node = connections_[connection];
-      if (!node.empty() && node != ros::this_node::getName())
-        sent[node][topic] += static_cast<int>(connections[k][3]);
-    }
+    const MessageCounts sent = lossless(node, all);
+    if (sent.empty())
+      continue;
+    const Delivery delivery = look(node, sent);
+    if (delivery.missing == 0)
+      continue;
+    if (waited < hold_limit_)
+      return true;
+    giveUp(node, delivery);
   }
-  return true;
+  return false;
 }
 
-XmlRpcClient* DeliveryMonitor::client(const std::string& node)
+/** @brief One look at all subscribers but the silent ones; who does not answer and may lose messages is silent then. */
+DeliveryMonitor::Round DeliveryMonitor::lookAtAll(std::set<std::string>& silent)
 {
-  std::unique_ptr<XmlRpcClient>& client = clients_[node];
-  if (client == nullptr)
+  Round round;
+  const auto sent_by_node = nodes_.sentMessages();
+  for (const auto& [node, all] : sent_by_node.value_or(std::map<std::string, MessageCounts>()))
   {
-    XmlRpcValue request;
-    XmlRpcValue response;
-    XmlRpcValue uri;
-    request[0] = ros::this_node::getName();
-    request[1] = node;
-    std::string host;
-    std::uint32_t port = 0;
-    if (!ros::master::execute("lookupNode", request, response, uri, false) ||
-        !ros::network::splitURI(static_cast<std::string>(uri), host, port))
-      return nullptr;
-    client = std::make_unique<XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
+    MessageCounts sent;
+    for (const auto& [topic, count] : all)
+      if (topics_.count(topic) > 0)
+        sent[topic] = count;
+    if (sent.empty() || silent.count(node) > 0)
+      continue;
+    const Delivery delivery = look(node, sent);
+    const bool waited_for = !lossless(node, all).empty();
+    round.received += delivery.received;
+    round.lossless_missing = round.lossless_missing || (waited_for && delivery.missing > 0);
+    if (delivery.answered || waited_for)
+      round.missing = round.missing || delivery.missing > 0;
+    else
+      silent.insert(node);
   }
-  return client.get();
+  return round;
 }
 
-bool DeliveryMonitor::receivedCounts(const std::string& node, Counts& received)
-{
-  XmlRpcValue stats;
-  if (!ask(node, "getBusStats", stats))
-    return false;
-  XmlRpcValue& subscriptions = stats[1];
-  for (int i = 0; subscriptions.getType() == XmlRpcValue::TypeArray && i < subscriptions.size(); ++i)
-  {
-    const std::string topic = subscriptions[i][0];
-    if (topics_.count(topic) > 0)
-    {
-      received[topic] += sumColumn(subscriptions[i][1], 2);
-      const int drops = sumColumn(subscriptions[i][1], 3);
-      if (drops > 0)
-        dropped_[node + " " + topic] = drops;
-    }
-  }
-  return true;
-}
-
-std::string DeliveryMonitor::laggard()
+void DeliveryMonitor::flush()
 {
   flushPublishQueues();
-  std::map<std::string, Counts> all_sent;
-  if (!sentCounts(all_sent))
-    return ros::this_node::getName();
-  for (const auto& [node, sent] : all_sent)
+  std::set<std::string> silent;
+  const double start = seconds();
+  double last_progress = start;
+  Round last;
+  do
   {
-    Counts received;
-    if (!receivedCounts(node, received))
-      return node;  // stopped or ended: in the second case its connections disappear presently
-    for (const auto& [topic, count] : sent)
-      if (received[topic] < count)
-        return node;
-  }
-  return std::string();
+    const Round round = lookAtAll(silent);
+    if (!round.missing)
+      return;
+    if (round.received != last.received)
+      last_progress = seconds();
+    last = round;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (ros::ok() && seconds() - start < hold_limit_ &&
+           (last.lossless_missing || seconds() - last_progress < PATIENCE));
 }
 
 }  // namespace frictional_contact_sim

@@ -117,7 +117,7 @@ size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double fo
     arrow.id = static_cast<int>(i);
     if (i < arrows)
     {
-      fillArrow(contacts[i], force_scale, simulator.report().dt, arrow);
+      fillArrow(contacts[i], force_scale, impulseTime(simulator), arrow);
       appendCone(contacts[i], cones);
     }
     else

@@ -159,7 +159,7 @@ void readRobot(ParameterReader& reader, const std::string& robot_description, No
 /** @brief What overrides a scenario file when it is set. */
 void readNumerics(ParameterReader& reader, Scenario& scenario)
 {
-  reader.read("time_step", scenario.time_step, positive());
+  reader.read("time_step", scenario.time_step, between(1e-9, 1e3));  // stamps are whole nanoseconds, never zero
   std::vector<double> gravity(scenario.gravity.data(), scenario.gravity.data() + 3);
   reader.read("gravity", gravity, 3);
   scenario.gravity = Eigen::Vector3d(gravity[0], gravity[1], gravity[2]);
@@ -287,6 +287,9 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   readFiles(reader, parameters);
   reader.read("start_paused", parameters.start_paused);
   reader.read("wait_for_subscribers", parameters.wait_for_subscribers);
+  reader.read("lossless_topics", parameters.lossless_topics);
+  reader.read("hold_limit", parameters.hold_limit, notNegative());
+  reader.read("publish_clock", parameters.publish_clock);
   int num_steps = 0;
   reader.read("num_steps", num_steps, 0);
   parameters.num_steps = num_steps;

@@ -4,17 +4,19 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/names.h>
+#include <std_msgs/String.h>
 
 #include <algorithm>
 
+#include "frictional_contact_sim/ros/end_request.h"
 #include "frictional_contact_sim/ros/parameter_error.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-constexpr int FREE_RUN_WINDOW = 32;  // steps between two looks at the subscribers: DeliveryMonitor
-constexpr int PACED_WINDOW = 1000;  // at a given pace queues stay short by themselves
+constexpr int FREE_RUN_WINDOW = 32;  // steps between two looks at the subscribers, below any queue (rosbag's: 100)
+constexpr double HOLD_PERIOD = 0.0005;  // between two looks while the run is held [s]
 constexpr std::uint32_t MAX_STEPS_PER_CALL = 100000;  // of ~step
 constexpr double IDLE_PERIOD = 0.02;  // [s]
 constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
@@ -32,6 +34,23 @@ bool goesOn(FailurePolicy policy)
   return policy == FailurePolicy::HOLD || policy == FailurePolicy::ACCEPT;
 }
 
+/** @brief False when the node has to end: a signal, or ROS shuts down. */
+bool going()
+{
+  return ros::ok() && !endRequested();
+}
+
+/** @brief Topics as users write them, ~name too. */
+std::vector<std::string> resolved(ros::NodeHandle& node, ros::NodeHandle& private_node,
+                                  const std::vector<std::string>& topics)
+{
+  std::vector<std::string> names;
+  for (const std::string& topic : topics)
+    names.push_back(topic.empty() || topic[0] != '~' ? node.resolveName(topic)
+                                                     : private_node.resolveName(topic.substr(1)));
+  return names;
+}
+
 void serveCallbacks(double timeout)
 {
   ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(timeout));
@@ -44,18 +63,18 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , simulator_(parameters.scenario)
   , names_(makeNameTable(simulator_))
   , publisher_(node, private_node, simulator_, names_, parameters)
-  , delivery_(publisher_.losslessTopics())
+  , delivery_(publisher_.dataTopics(),
+              publisher_.losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
+              parameters.hold_limit)
+  , commands_(private_node, simulator_, names_, parameters.servo_gains)
   , pacer_(parameters.real_time_factor)
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
 {
-  for (const std::string& topic : parameters.wait_for_subscribers)
-  {
-    awaited_topics_.push_back(topic.empty() || topic[0] != '~' ? node.resolveName(topic)
-                                                               : private_node.resolveName(topic.substr(1)));
-    publisher_.subscribers(awaited_topics_.back());
-  }
+  awaited_topics_ = resolved(node, private_node, parameters.wait_for_subscribers);
+  for (const std::string& topic : awaited_topics_)
+    publisher_.subscribers(topic);  // throws where it is none of this node's
   for (const std::string& warning : simulator_.warnings())
     ROS_WARN_STREAM(warning);
   for (const std::string& joint : names_.unsupported_joints)
@@ -64,7 +83,10 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   setServoGains();
   simulator_.setStart();  // a reset keeps the gains
   advertiseServices(private_node);
-  subscribeCommands(private_node);
+  lossless_nodes_ = node.subscribe<std_msgs::String>(LOSSLESS_NODES_TOPIC, 100,
+                                                     [this](const std_msgs::String::ConstPtr& message)
+                                                     { delivery_.addLosslessNode(message->data); });
+  publisher_.greetSubscribers(paused_);
   ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
   if (judge("impact at the start") == Outcome::FAILED)
@@ -130,56 +152,21 @@ void SimulatorNode::advertiseServices(ros::NodeHandle& private_node)
   services_.push_back(private_node.advertiseService("step", &SimulatorNode::stepService, this));
 }
 
-void SimulatorNode::subscribeCommands(ros::NodeHandle& private_node)
-{
-  using Array = std_msgs::Float64MultiArray;
-  const auto add = [&](const std::string& topic, JointCommand::Mode mode,
-                       std::vector<double> sensor_msgs::JointState::*field, const std::string& field_name)
-  {
-    subscribers_.push_back(private_node.subscribe<sensor_msgs::JointState>(
-        topic, 10,
-        [this, topic, mode, field, field_name](const sensor_msgs::JointState::ConstPtr& message)
-        { command(topic, mode, [&] { return namedTargets(names_, message->name, (*message).*field, field_name); }); }));
-    const std::string array_topic = topic + "_array";
-    subscribers_.push_back(private_node.subscribe<Array>(
-        array_topic, 10,
-        [this, array_topic, mode](const Array::ConstPtr& message)
-        { command(array_topic, mode, [&] { return orderedTargets(names_, message->data); }); }));
-  };
-  add("command/effort", JointCommand::Mode::EFFORT, &sensor_msgs::JointState::effort, "effort");
-  add("command/position", JointCommand::Mode::POSITION, &sensor_msgs::JointState::position, "position");
-}
-
-void SimulatorNode::command(const std::string& topic, JointCommand::Mode mode,
-                            const std::function<JointTargets()>& targets)
-{
-  try
-  {
-    for (const auto& [index, target] : targets())
-    {
-      const JointHandle& joint = names_.joints[index];
-      simulator_.setCommand(joint.body, joint.joint,
-                            mode == JointCommand::Mode::EFFORT
-                                ? effortCommand(target)
-                                : positionCommand(target, joint.name, parameters_.servo_gains));
-    }
-  }
-  catch (const std::exception& error)
-  {
-    ROS_WARN_STREAM("~" << topic << ": command ignored: " << error.what());
-  }
-}
-
 void SimulatorNode::setPaused(bool paused)
 {
   paused_ = paused;
-  publisher_.publishClock(simulator_.time() > 0.0 ? simulator_.time() : simulator_.scenario().time_step);
+  publisher_.greetSubscribers(paused);
+  if (paused)
+    publisher_.publishRest();
+  publisher_.publishClock();
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
 void SimulatorNode::reset()
 {
   simulator_.reset();
+  if (paused_)
+    publisher_.publishState();
   if (judge("impact at the start") == Outcome::FAILED)
     outcome_ = Outcome::FAILED;
 }
@@ -187,6 +174,9 @@ void SimulatorNode::reset()
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
+  publisher_.restartStamps();
+  if (paused_)
+    publisher_.publishState();
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
@@ -211,11 +201,14 @@ bool SimulatorNode::stepService(Step::Request& request, Step::Response& response
   {
     std::uint32_t done = 0;
     Outcome outcome = Outcome::GO_ON;
-    while (done < request.n && outcome == Outcome::GO_ON && ros::ok())
+    while (done < request.n && outcome == Outcome::GO_ON && going())
     {
       outcome = advance();
       done += simulator_.outcome().taken;
+      if (windowEnds())
+        hold([] { ros::WallDuration(HOLD_PERIOD).sleep(); });  // no other call is served within this one
     }
+    publisher_.publishRest();
     response.success = done == request.n && outcome != Outcome::FAILED && outcome != Outcome::PAUSED;
     if (!response.success)
       response.message = "stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps";
@@ -271,28 +264,24 @@ SimulatorNode::Outcome SimulatorNode::advance()
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_.publish(pacer_.realTimeFactor());
-  const bool free_run = parameters_.real_time_factor <= 0.0 || paused_;
-  if (steps_done_ % (free_run ? FREE_RUN_WINDOW : PACED_WINDOW) == 0)
-    holdForSubscribers();
   return judge("step " + std::to_string(simulator_.report().step));
 }
 
-/** @brief Full queues hold the run, they never drop. */
-void SimulatorNode::holdForSubscribers()
+/** @brief Steps as fast as possible stop now and then for roscpp's own thread and for those that must get everything.
+ */
+bool SimulatorNode::windowEnds() const
 {
+  const bool free_run = parameters_.real_time_factor <= 0.0 || paused_;
+  return free_run && simulator_.outcome().taken && steps_done_ % FREE_RUN_WINDOW == 0;
+}
+
+/** @brief Until they have it, at most ~hold_limit. @param pass passes a little time */
+void SimulatorNode::hold(const std::function<void()>& pass)
+{
+  delivery_.flushPublishQueues();
   const double start = wallSeconds();
-  bool complained = false;
-  std::string laggard = delivery_.laggard();
-  while (ros::ok() && !laggard.empty())
-  {
-    if (!complained && wallSeconds() - start > COMPLAINT_DELAY)
-    {
-      ROS_WARN_STREAM("the run waits for " << laggard << ", which does not read what it subscribed to");
-      complained = true;
-    }
-    ros::WallDuration(0.0005).sleep();
-    laggard = delivery_.laggard();
-  }
+  while (going() && delivery_.lagging(wallSeconds() - start))
+    pass();
 }
 
 bool SimulatorNode::subscribersStand()
@@ -307,9 +296,8 @@ bool SimulatorNode::subscribersStand()
 void SimulatorNode::idle()
 {
   const double due = wallSeconds() + CLOCK_PERIOD;
-  // Time zero means "no clock yet" to ROS: before the first step it is the time of that step.
-  publisher_.publishClock(simulator_.time() > 0.0 ? simulator_.time() : simulator_.scenario().time_step);
-  while (ros::ok() && (paused_ || waiting_) && outcome_ == Outcome::GO_ON && wallSeconds() < due)
+  publisher_.publishClock();
+  while (going() && (paused_ || waiting_) && outcome_ == Outcome::GO_ON && wallSeconds() < due)
   {
     serveCallbacks(IDLE_PERIOD);
     if (waiting_)
@@ -327,9 +315,11 @@ void SimulatorNode::runStep()
   outcome_ = advance();
   if (outcome_ == Outcome::PAUSED)
     outcome_ = Outcome::GO_ON;
+  if (windowEnds())
+    hold([] { serveCallbacks(HOLD_PERIOD); });
   double wait = pacer_.wait(simulator_.time(), wallSeconds());
   serveCallbacks(0.0);
-  while (ros::ok() && wait > 0.0 && !paused_)
+  while (going() && wait > 0.0 && !paused_)
   {
     serveCallbacks(std::min(wait, IDLE_PERIOD));
     wait = pacer_.wait(simulator_.time(), wallSeconds());
@@ -338,14 +328,14 @@ void SimulatorNode::runStep()
 
 int SimulatorNode::run()
 {
+  endInOrder();
   pacer_.restart(simulator_.time(), wallSeconds());
-  while (ros::ok() && outcome_ == Outcome::GO_ON)
+  while (going() && outcome_ == Outcome::GO_ON)
     if (paused_ || waiting_)
       idle();
     else
       runStep();
-  if (outcome_ != Outcome::GO_ON)
-    holdForSubscribers();  // the last messages, before the connections close
+  delivery_.flush();  // the last messages, before the connections close
   if (failure_lines_.heldBack() > 0)
     ROS_WARN_STREAM("failed steps not shown at the end: " << failure_lines_.heldBack());
   for (const auto& [subscriber, count] : delivery_.dropped())

@@ -1,5 +1,8 @@
 #include "frictional_contact_sim/ros/step_publisher.h"
 
+#include <ros/single_subscriber_publisher.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "frictional_contact_sim/ros/parameter_error.h"
@@ -8,10 +11,14 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/** Without bound: a subscriber that lags holds the run (DeliveryMonitor), the publisher never drops. */
-constexpr std::uint32_t LOSSLESS_QUEUE = 0;
+/**
+ * Well above what is in flight to those that hold a free run (DeliveryMonitor), a second or two of a paced one; and a
+ * bound, since nobody waits for a subscriber that has stopped reading.
+ */
+constexpr std::uint32_t DATA_QUEUE = 2000;
 /** Pictures, transforms and the clock: the newest counts. */
 constexpr std::uint32_t LATEST_QUEUE = 10;
+constexpr std::uint32_t TRANSFORM_QUEUE = 100;
 
 bool listened(const ros::Publisher& publisher)
 {
@@ -35,6 +42,20 @@ bool StepDivider::due(std::uint64_t step) const
   return step % steps_ == 0;
 }
 
+/** @param fill the message of the present state, for those who subscribe while nothing moves */
+template <typename Message>
+ros::Publisher StepPublisher::advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
+                                        const Message& (StepPublisher::*fill)())
+{
+  return node.advertise<Message>(
+      topic, queue,
+      [this, fill](const ros::SingleSubscriberPublisher& subscriber)
+      {
+        if (greeting_)
+          subscriber.publish((this->*fill)());
+      });
+}
+
 StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulator& simulator,
                              const NameTable& names, const NodeParameters& parameters)
   : simulator_(simulator)
@@ -44,35 +65,63 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , tf_divider_(parameters.tf_rate, simulator.scenario().time_step)
   , marker_divider_(parameters.marker_rate, simulator.scenario().time_step)
   , publish_base_tf_(parameters.publish_base_tf)
+  , publish_clock_(parameters.publish_clock)
   , force_scale_(parameters.force_scale > 0.0 ? parameters.force_scale : defaultForceScale(simulator))
 {
-  joint_states_publisher_ = node.advertise<sensor_msgs::JointState>("joint_states", LOSSLESS_QUEUE);
-  contacts_publisher_ = private_node.advertise<ContactArray>("contacts", LOSSLESS_QUEUE);
-  step_report_publisher_ = private_node.advertise<StepReport>("step_report", LOSSLESS_QUEUE);
-  lossless_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(), step_report_publisher_.getTopic()};
+  joint_states_publisher_ = advertise(node, "joint_states", DATA_QUEUE, &StepPublisher::jointStates);
+  contacts_publisher_ = advertise(private_node, "contacts", DATA_QUEUE, &StepPublisher::contacts);
+  step_report_publisher_ = private_node.advertise<StepReport>("step_report", DATA_QUEUE);
+  data_topics_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(),
+                  step_report_publisher_.getTopic()};
+  odometry_.resize(simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
-  {
-    const std::string prefix = body == 0 ? "" : simulator.bodyName(body) + "/";
-    odometry_publishers_.push_back(
-        private_node.advertise<nav_msgs::Odometry>("ground_truth/" + prefix + "odom", LOSSLESS_QUEUE));
-    lossless_.insert(odometry_publishers_.back().getTopic());
-  }
-  odometry_.resize(odometry_publishers_.size());
-  markers_publisher_ = private_node.advertise<visualization_msgs::MarkerArray>("markers", LATEST_QUEUE);
-  clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", LATEST_QUEUE);
-  tf_publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf", 100);
+    advertiseOdometry(private_node, body);
+  markers_publisher_ = advertise(private_node, "markers", LATEST_QUEUE, &StepPublisher::allMarkers);
+  if (publish_clock_)
+    clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", LATEST_QUEUE);
+  tf_publisher_ = advertise(node, "/tf", TRANSFORM_QUEUE, &StepPublisher::transforms);
 }
 
-const std::set<std::string>& StepPublisher::losslessTopics() const
+void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body)
 {
-  return lossless_;
+  const std::string prefix = body == 0 ? "" : simulator_.bodyName(body) + "/";
+  odometry_publishers_.push_back(
+      private_node.advertise<nav_msgs::Odometry>("ground_truth/" + prefix + "odom", DATA_QUEUE,
+                                                 [this, body](const ros::SingleSubscriberPublisher& subscriber)
+                                                 {
+                                                   if (greeting_)
+                                                     subscriber.publish(odometry(body));
+                                                 }));
+  data_topics_.insert(odometry_publishers_.back().getTopic());
+}
+
+void StepPublisher::greetSubscribers(bool on)
+{
+  greeting_ = on;
+}
+
+const std::set<std::string>& StepPublisher::dataTopics() const
+{
+  return data_topics_;
+}
+
+std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::string>& resolved_names) const
+{
+  std::string known;
+  for (const std::string& topic : data_topics_)
+    known += (known.empty() ? "" : ", ") + topic;
+  for (const std::string& topic : resolved_names)
+    if (data_topics_.count(topic) == 0)
+      throw ParameterError("~lossless_topics: found '" + topic + "', expected topics of every step: " + known);
+  return {resolved_names.begin(), resolved_names.end()};
 }
 
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
   std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_,  &markers_publisher_,
-                                                   &clock_publisher_,        &tf_publisher_};
+                                                   &step_report_publisher_, &markers_publisher_, &tf_publisher_};
+  if (publish_clock_)
+    publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)
     publishers.push_back(&publisher);
   std::string known;
@@ -88,7 +137,7 @@ std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 StepReport StepPublisher::report(double real_time_factor) const
 {
   StepReport report;
-  fillStepReport(simulator_.report(), real_time_factor, toStamp(simulator_.time()), report);
+  fillStepReport(simulator_.report(), real_time_factor, std::max(ros::TIME_MIN, toStamp(simulator_.time())), report);
   return report;
 }
 
@@ -96,53 +145,87 @@ void StepPublisher::publishReport(double real_time_factor)
 {
   if (!listened(step_report_publisher_))
     return;
-  fillStepReport(simulator_.report(), real_time_factor, toStamp(simulator_.time()), step_report_);
+  fillStepReport(simulator_.report(), real_time_factor, std::max(ros::TIME_MIN, toStamp(simulator_.time())),
+                 step_report_);
   step_report_publisher_.publish(step_report_);
 }
 
-void StepPublisher::publishClock(double seconds)
+void StepPublisher::publishClock()
 {
-  if (listened(clock_publisher_))
+  if (publish_clock_ && listened(clock_publisher_))
   {
-    clock_.clock = toStamp(seconds);
+    clock_.clock = stamp_;
     clock_publisher_.publish(clock_);
   }
 }
 
-void StepPublisher::publishOdometry(const ros::Time& stamp)
+const sensor_msgs::JointState& StepPublisher::jointStates()
 {
-  for (size_t body = 0; body < odometry_publishers_.size(); ++body)
-  {
-    if (listened(odometry_publishers_[body]))
-    {
-      fillOdometry(simulator_, names_, static_cast<int>(body), stamp, odometry_[body]);
-      odometry_publishers_[body].publish(odometry_[body]);
-    }
-  }
+  fillJointState(simulator_, names_, stamp_, joint_states_);
+  return joint_states_;
 }
 
-void StepPublisher::publishTransforms(const ros::Time& stamp)
+const ContactArray& StepPublisher::contacts()
 {
-  if (!publish_base_tf_ || !listened(tf_publisher_))
-    return;
+  fillContacts(simulator_, names_, stamp_, contacts_);
+  return contacts_;
+}
+
+const nav_msgs::Odometry& StepPublisher::odometry(int body)
+{
+  fillOdometry(simulator_, names_, body, stamp_, odometry_[body]);
+  return odometry_[body];
+}
+
+const tf2_msgs::TFMessage& StepPublisher::transforms()
+{
   transforms_.transforms.clear();
-  for (int body = 0; body < simulator_.bodyCount(); ++body)
+  for (int body = 0; publish_base_tf_ && body < simulator_.bodyCount(); ++body)
   {
     if (names_.roots[body] != WORLD_FRAME)
     {
       transforms_.transforms.emplace_back();
-      fillTransform(simulator_, names_, body, stamp, transforms_.transforms.back());
+      fillTransform(simulator_, names_, body, stamp_, transforms_.transforms.back());
     }
   }
-  if (!transforms_.transforms.empty())
+  return transforms_;
+}
+
+/** @brief For one who has no arrows yet; what the others have still counts for the next message. */
+const visualization_msgs::MarkerArray& StepPublisher::allMarkers()
+{
+  fillMarkers(simulator_, stamp_, force_scale_, 0, markers_);
+  return markers_;
+}
+
+void StepPublisher::publishJointsAndContacts()
+{
+  if (listened(joint_states_publisher_))
+    joint_states_publisher_.publish(jointStates());
+  if (listened(contacts_publisher_))
+    contacts_publisher_.publish(contacts());
+}
+
+void StepPublisher::publishOdometry()
+{
+  for (size_t body = 0; body < odometry_publishers_.size(); ++body)
+    if (listened(odometry_publishers_[body]))
+      odometry_publishers_[body].publish(odometry(static_cast<int>(body)));
+}
+
+void StepPublisher::publishTransforms()
+{
+  transforms_stamp_ = stamp_;
+  if (publish_base_tf_ && listened(tf_publisher_) && !transforms().transforms.empty())
     tf_publisher_.publish(transforms_);
 }
 
-void StepPublisher::publishMarkers(const ros::Time& stamp)
+void StepPublisher::publishMarkers()
 {
+  markers_stamp_ = stamp_;
   if (listened(markers_publisher_))
   {
-    arrows_ = fillMarkers(simulator_, stamp, force_scale_, arrows_, markers_);
+    arrows_ = fillMarkers(simulator_, stamp_, force_scale_, arrows_, markers_);
     markers_publisher_.publish(markers_);
   }
 }
@@ -150,28 +233,41 @@ void StepPublisher::publishMarkers(const ros::Time& stamp)
 void StepPublisher::publish(double real_time_factor)
 {
   const std::uint64_t step = simulator_.report().step;
-  const ros::Time stamp = toStamp(simulator_.time());
+  stamp_ = std::max(ros::TIME_MIN, toStamp(simulator_.time()));
   if (clock_divider_.due(step))
-    publishClock(simulator_.time());
+    publishClock();
   if (state_divider_.due(step))
   {
-    if (listened(joint_states_publisher_))
-    {
-      fillJointState(simulator_, names_, stamp, joint_states_);
-      joint_states_publisher_.publish(joint_states_);
-    }
-    if (listened(contacts_publisher_))
-    {
-      fillContacts(simulator_, names_, stamp, contacts_);
-      contacts_publisher_.publish(contacts_);
-    }
+    publishJointsAndContacts();
     publishReport(real_time_factor);
-    publishOdometry(stamp);
+    publishOdometry();
   }
   if (tf_divider_.due(step))
-    publishTransforms(stamp);
+    publishTransforms();
   if (marker_divider_.due(step))
-    publishMarkers(stamp);
+    publishMarkers();
+}
+
+void StepPublisher::publishRest()
+{
+  if (transforms_stamp_ != stamp_)
+    publishTransforms();
+  if (markers_stamp_ != stamp_)
+    publishMarkers();
+}
+
+void StepPublisher::publishState()
+{
+  stamp_ += ros::Duration(0, 1);
+  publishJointsAndContacts();
+  publishOdometry();
+  publishTransforms();
+  publishMarkers();
+}
+
+void StepPublisher::restartStamps()
+{
+  stamp_ = std::max(ros::TIME_MIN, toStamp(simulator_.time()));
 }
 
 }  // namespace frictional_contact_sim

@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/ros/throttle.h"
 
+#include <iterator>
 #include <utility>
 
 namespace frictional_contact_sim
@@ -22,6 +23,17 @@ std::optional<int> Throttle::pass(double wall)
 int Throttle::heldBack() const
 {
   return held_back_;
+}
+
+LineThrottle::LineThrottle(double period, size_t most) : period_(period), most_(most)
+{
+}
+
+bool LineThrottle::pass(const std::string& line, double wall)
+{
+  for (auto shown = shown_.begin(); shown != shown_.end();)
+    shown = wall - shown->second < period_ ? std::next(shown) : shown_.erase(shown);
+  return shown_.size() < most_ && shown_.emplace(line, wall).second;
 }
 
 }  // namespace frictional_contact_sim

@@ -70,3 +70,9 @@ def wait_until(condition, timeout=TIMEOUT):
             return True
         time.sleep(0.01)
     return condition()
+
+
+def read_once(topic):
+    """The next message of a topic as text, read by a process of its own."""
+    return subprocess.run(["rostopic", "echo", "-n", "1", topic], stdout=subprocess.PIPE, text=True, timeout=TIMEOUT,
+                          check=True).stdout

@@ -167,7 +167,7 @@ TEST(ParametersTest, AnUnknownKeyOfAMaterialIsRefusedAsInAScenarioFile)
 TEST(ParametersTest, ALineNamesParameterAndWhatWasFoundAndExpected)
 {
   EXPECT_THAT(complaint("time_step", XmlRpcValue("fast")),
-              testing::AllOf(HasSubstr("~time_step"), HasSubstr("'fast'"), HasSubstr("number > 0")));
+              testing::AllOf(HasSubstr("~time_step"), HasSubstr("'fast'"), HasSubstr("number in [1e-09, 1000]")));
   EXPECT_THAT(complaint("time_step", XmlRpcValue(0.0)), HasSubstr("the number 0"));
   EXPECT_THAT(complaint("default_friction", XmlRpcValue(-0.5)),
               testing::AllOf(HasSubstr("~default_friction"), HasSubstr("-0.5"), HasSubstr(">= 0")));

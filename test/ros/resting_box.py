@@ -43,6 +43,7 @@ class RestingBoxTest(unittest.TestCase):
             recorder = subprocess.Popen(["rosrun", "frictional_contact_sim", "record_bag", bag] + topics)
             # Contacts twice: this test and the recorder. As fast as possible: nothing may be lost there either.
             node = node_runner.Node({"tolerance": 1e-11, "num_steps": STEPS, "real_time_factor": 0.0, "bag": bag,
+                                     "lossless_topics": ["~contacts"],
                                      "wait_for_subscribers": ["~contacts", "~contacts", "joint_states", "~step_report"]},
                                     node_runner.box_urdf())
             code = node.wait()

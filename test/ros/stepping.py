@@ -59,10 +59,12 @@ class SteppingTest(unittest.TestCase):
         # Each round starts from the same state and so ends in the same state.
         self.assertEqual([first_height[0]] * ROUNDS, first_height)
         self.assertTrue(node_runner.wait_until(lambda: len(self.reports) >= ROUNDS * STEPS, 10.0))
-        self.assertTrue(node_runner.wait_until(lambda: len(self.stamps) >= ROUNDS * STEPS, 10.0))
+        self.assertTrue(node_runner.wait_until(lambda: len(self.stamps) >= ROUNDS * STEPS + ROUNDS + 1, 10.0))
         self.assertEqual(list(range(1, ROUNDS * STEPS + 1)), [report.step for report in self.reports])
-        self.assertEqual(self.stamps, [report.header.stamp for report in self.reports])
-        self.assertEqual(self.stamps, sorted(self.stamps))
+        # Steps have one stamp on all topics; beside them there is the state at the start and after each reset.
+        steps = [report.header.stamp for report in self.reports]
+        resets = [steps[(k + 1) * STEPS - 1] + rospy.Duration(0, 1) for k in range(ROUNDS)]
+        self.assertEqual(self.stamps, sorted([rospy.Time(0, 1)] + steps + resets))
         self.assertFalse(self.stamps[0].is_zero())
         self.assertEqual(self.clocks, sorted(self.clocks))
         self.assertFalse(self.clocks[0].is_zero())

@@ -28,5 +28,18 @@ TEST(ThrottleTest, WithoutAPeriodEveryMessagePasses)
   EXPECT_EQ(throttle.pass(1.0), 0);
 }
 
+TEST(LineThrottleTest, EachLineOnceAPeriodAndOnlySomeDifferentOnes)
+{
+  LineThrottle lines(1.0, 3);
+  int shown = 0;
+  for (int k = 0; k < 2500; ++k)
+    shown += lines.pass("the same", 10.0 + 0.001 * k) ? 1 : 0;
+  EXPECT_EQ(shown, 3);
+  for (int k = 0; k < 1000; ++k)  // a flood of different ones
+    shown += lines.pass("line " + std::to_string(k), 20.0 + 0.0005 * k) ? 1 : 0;
+  EXPECT_EQ(shown, 6);
+  EXPECT_TRUE(lines.pass("another", 21.6));
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim

@@ -4,6 +4,7 @@
  * @brief Command messages to joint commands: pure functions that take a message as a whole or not at all.
  */
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,6 +22,9 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+constexpr double MAX_TRAVEL = 50.0;  ///< [rad] or [m]
+constexpr double MAX_EFFORT = 1e9;  ///< [N m] or [N]
+
 /** @brief Index into NameTable::joints and the target there. */
 using JointTargets = std::vector<std::pair<int, double>>;
 
@@ -35,6 +39,15 @@ JointTargets namedTargets(const NameTable& names, const std::vector<std::string>
  * @throws CommandError wrong length, number that is not finite
  */
 JointTargets orderedTargets(const NameTable& names, const std::vector<double>& values);
+
+/**
+ * @brief Takes a target into what its joint can do: a position within the URDF's limits and no further than
+ * MAX_TRAVEL from where the joint is, an effort within the URDF's limit and MAX_EFFORT.
+ * @param position of the joint [rad] or [m]
+ * @return one line when the target was changed, without the target itself: the same for each such command
+ */
+std::optional<std::string> clampTarget(const Joint& joint, const std::string& name, JointCommand::Mode mode,
+                                       double position, double& target);
 
 /** @brief The servo of a joint: its own gains, else those of `default`, else defaults from its inertia. */
 JointCommand positionCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains);

@@ -23,6 +23,9 @@ extern const char* const WORLD_FRAME;
 /** @brief Simulated seconds to a stamp, rounded to nanoseconds. */
 ros::Time toStamp(double seconds);
 
+/** @brief What an impulse is divided by to be published as a force [s]: the last step's, before it the next one's. */
+double impulseTime(const Simulator& simulator);
+
 void fillJointState(const Simulator& simulator, const NameTable& names, const ros::Time& stamp,
                     sensor_msgs::JointState& message);
 void fillContacts(const Simulator& simulator, const NameTable& names, const ros::Time& stamp, ContactArray& message);

@@ -39,11 +39,14 @@ struct NodeParameters
   double force_scale = 0.0;  ///< length of force arrows [m/N]; 0 = half a metre for the weight of all bodies
   bool start_paused = false;
   std::vector<std::string> wait_for_subscribers;  ///< topics that must have a subscriber before the first step
+  std::vector<std::string> lossless_topics;  ///< topics whose subscribers may hold a free run
+  double hold_limit = 5.0;  ///< how long each of them may, and a recorder that has announced itself [s wall clock]
   std::int64_t num_steps = 0;  ///< exit after so many; 0 = never
   std::string dump_dir;  ///< FCLib files of failed steps; empty = none
   int max_dumps = 20;  ///< at most so many files a run
   std::string bag;  ///< file that a recorder is to write: its folder is checked
   bool publish_base_tf = true;
+  bool publish_clock = true;  ///< false where another node publishes /clock
   std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others
   int seed = 0;  ///< of methods with random numbers
   std::vector<std::string> warnings;  ///< unknown or unused parameters, one line each

@@ -6,7 +6,6 @@
  */
 #include <frictional_contact_sim/Step.h>
 #include <ros/node_handle.h>
-#include <std_msgs/Float64MultiArray.h>
 #include <std_srvs/Empty.h>
 #include <std_srvs/SetBool.h>
 
@@ -15,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "frictional_contact_sim/ros/command.h"
+#include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
 #include "frictional_contact_sim/ros/pacer.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
@@ -42,7 +41,6 @@ private:
   };
 
   void advertiseServices(ros::NodeHandle& private_node);
-  void subscribeCommands(ros::NodeHandle& private_node);
   void setServoGains();
 
   Outcome advance();
@@ -50,25 +48,26 @@ private:
   void reportFailure(const std::string& where);
   void runStep();
   void idle();
-  void holdForSubscribers();
+  bool windowEnds() const;
+  void hold(const std::function<void()>& pass);
   bool subscribersStand();
   void setPaused(bool paused);
   void reset();
   void resetTime();
   bool stepService(Step::Request& request, Step::Response& response);
-  void command(const std::string& topic, JointCommand::Mode mode, const std::function<JointTargets()>& targets);
 
   NodeParameters parameters_;
   Simulator simulator_;
   NameTable names_;
   StepPublisher publisher_;
   DeliveryMonitor delivery_;
+  CommandListener commands_;
   Pacer pacer_;
   Throttle failure_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
   std::vector<ros::ServiceServer> services_;
-  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber lossless_nodes_;
   bool paused_ = false;
   bool waiting_ = false;
   double standing_since_ = std::numeric_limits<double>::infinity();  // wall clock: all awaited subscribers are there

@@ -37,21 +37,45 @@ public:
   StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulator& simulator,
                 const NameTable& names, const NodeParameters& parameters);
 
+  /** @brief What is due of the step just taken. */
   void publish(double real_time_factor);
+  /** @brief What was not due of the last step, when nothing moves on: the picture is of the present state. */
+  void publishRest();
+  /**
+   * @brief The state without a step, after a reset: everything but the clock and the report. It gets a stamp of its
+   * own, a nanosecond after the last one, since tf takes no second transform with the same.
+   */
+  void publishState();
+  /** @brief Time was set back: stamps follow it. */
+  void restartStamps();
+  /** @brief While on, who subscribes gets the present state at once; else the next step is soon. */
+  void greetSubscribers(bool on);
   /** @brief Only ~step_report, of a step that was not taken: nothing else has changed. */
   void publishReport(double real_time_factor);
-  /** @brief Only /clock, for those who come while the simulation pauses. */
-  void publishClock(double seconds);
-  /** @brief Topics that a recorder gets every message of. */
-  const std::set<std::string>& losslessTopics() const;
+  /** @brief Only /clock, with the stamp of the present state, for those who come while the simulation pauses. */
+  void publishClock();
+  /** @brief Topics of every step: what a recorder gets every message of. */
+  const std::set<std::string>& dataTopics() const;
+  /** @brief Those named in ~lossless_topics. @throws ParameterError for one that is not a data topic */
+  std::set<std::string> losslessTopics(const std::vector<std::string>& resolved_names) const;
   /** @brief Subscribers of a topic of this node by resolved name. @throws ParameterError for another topic */
   std::uint32_t subscribers(const std::string& topic) const;
   StepReport report(double real_time_factor) const;
 
 private:
-  void publishOdometry(const ros::Time& stamp);
-  void publishTransforms(const ros::Time& stamp);
-  void publishMarkers(const ros::Time& stamp);
+  template <typename Message>
+  ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
+                           const Message& (StepPublisher::*fill)());
+  void advertiseOdometry(ros::NodeHandle& private_node, int body);
+  const sensor_msgs::JointState& jointStates();
+  const ContactArray& contacts();
+  const nav_msgs::Odometry& odometry(int body);
+  const tf2_msgs::TFMessage& transforms();
+  const visualization_msgs::MarkerArray& allMarkers();
+  void publishJointsAndContacts();
+  void publishOdometry();
+  void publishTransforms();
+  void publishMarkers();
 
   const Simulator& simulator_;
   const NameTable& names_;
@@ -60,9 +84,14 @@ private:
   StepDivider tf_divider_;
   StepDivider marker_divider_;
   bool publish_base_tf_;
+  bool publish_clock_;
   double force_scale_;
   size_t arrows_ = 0;
-  std::set<std::string> lossless_;
+  std::set<std::string> data_topics_;
+  ros::Time stamp_ = ros::TIME_MIN;  ///< of the present state; zero would mean "no clock yet"
+  ros::Time transforms_stamp_;  ///< of the state that was shown last
+  ros::Time markers_stamp_;
+  bool greeting_ = false;
 
   ros::Publisher joint_states_publisher_;
   ros::Publisher contacts_publisher_;

@@ -1,0 +1,170 @@
+#include "frictional_contact_sim/ros/slave_api.h"
+
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
+#include <xmlrpcpp/XmlRpc.h>
+
+#include <algorithm>
+
+namespace frictional_contact_sim
+{
+using XmlRpc::XmlRpcClient;
+using XmlRpc::XmlRpcValue;
+
+namespace
+{
+constexpr double CALL_TIMEOUT = 0.5;  // [s]
+constexpr double CALL_SLICE = 0.02;  // between two looks at a shutdown [s]
+
+/** @brief A call that neither hangs on a stopped node nor keeps a shutdown waiting. */
+bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, XmlRpcValue& response)
+{
+  if (!client.executeNonBlock(method, request))
+    return false;
+  XmlRpc::XmlRpcDispatch dispatch;
+  dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(CALL_TIMEOUT);
+  bool done = false;
+  while (!ros::isShuttingDown() && !done && ros::WallTime::now() < end)
+  {
+    dispatch.work(CALL_SLICE);
+    done = client.executeCheckDone(response);
+  }
+  dispatch.removeSource(&client);
+  return done && !client.isFault() && response.valid();
+}
+
+/** @brief Element of a list, else an invalid value. */
+XmlRpcValue element(const XmlRpcValue& list, int index)
+{
+  const bool there = list.getType() == XmlRpcValue::TypeArray && index < list.size();
+  return there ? list[index] : XmlRpcValue();
+}
+
+int length(const XmlRpcValue& list)
+{
+  return list.getType() == XmlRpcValue::TypeArray ? list.size() : 0;
+}
+
+std::string text(XmlRpcValue value)
+{
+  return value.getType() == XmlRpcValue::TypeString ? static_cast<std::string>(value) : std::string();
+}
+
+std::int64_t count(XmlRpcValue value)
+{
+  return value.getType() == XmlRpcValue::TypeInt ? std::max(0, static_cast<int>(value)) : 0;
+}
+
+/** @brief roscpp answers getBusStats with the value alone, rospy with the slave API's [1, text, value]. */
+XmlRpcValue unwrap(const XmlRpcValue& answer)
+{
+  return element(answer, 0).getType() == XmlRpcValue::TypeInt ? element(answer, 2) : answer;
+}
+
+}  // namespace
+
+SubscriptionCounts readSubscriptions(const XmlRpcValue& answer)
+{
+  const XmlRpcValue subscriptions = element(unwrap(answer), 1);
+  SubscriptionCounts counts;
+  for (int i = 0; i < length(subscriptions); ++i)
+  {
+    // [topic, [[connection, bytes, messages, drops, ...], ...]]
+    const std::string topic = text(element(subscriptions[i], 0));
+    const XmlRpcValue connections = element(subscriptions[i], 1);
+    for (int k = 0; k < length(connections); ++k)
+    {
+      counts.received[topic] += count(element(connections[k], 2));
+      counts.dropped[topic] += count(element(connections[k], 3));
+    }
+  }
+  return counts;
+}
+
+/** @brief [[connection, node, direction, transport, topic, ...], ...]: which node is at the other end. */
+void SlaveApi::readConnections()
+{
+  connections_.clear();
+  const XmlRpcValue info = unwrap(ask(ros::this_node::getName(), "getBusInfo").value_or(XmlRpcValue()));
+  for (int i = 0; i < length(info); ++i)
+    connections_[count(element(info[i], 0))] = text(element(info[i], 1));
+}
+
+std::optional<std::map<std::string, MessageCounts>> SlaveApi::sentMessages()
+{
+  const std::optional<XmlRpcValue> stats = ask(ros::this_node::getName(), "getBusStats");
+  if (!stats)
+    return std::nullopt;
+  const XmlRpcValue publications = element(unwrap(*stats), 0);
+  std::map<std::string, MessageCounts> sent;
+  for (int i = 0; i < length(publications); ++i)
+  {
+    // [topic, [[connection, bytes, bytes, messages, ...], ...]]
+    const std::string topic = text(element(publications[i], 0));
+    const XmlRpcValue connections = element(publications[i], 1);
+    for (int k = 0; k < length(connections); ++k)
+    {
+      const std::int64_t connection = count(element(connections[k], 0));
+      if (connections_.count(connection) == 0)
+        readConnections();
+      const std::string& node = connections_[connection];
+      if (!node.empty() && node != ros::this_node::getName())
+        sent[node][topic] += count(element(connections[k], 3));
+    }
+  }
+  return sent;
+}
+
+std::optional<XmlRpcValue> SlaveApi::ask(const std::string& node, const char* method)
+{
+  XmlRpcClient* remote = client(node);
+  XmlRpcValue request;
+  XmlRpcValue response;
+  request[0] = ros::this_node::getName();
+  if (remote != nullptr && call(*remote, method, request, response))
+    return response;
+  clients_.erase(node);
+  return std::nullopt;
+}
+
+/** @brief Of a node's XML-RPC server, empty when it has none. */
+std::string SlaveApi::uri(const std::string& node) const
+{
+  if (node == ros::this_node::getName())
+    return ros::XMLRPCManager::instance()->getServerURI();
+  XmlRpcClient master(ros::master::getHost().c_str(), static_cast<int>(ros::master::getPort()), "/");
+  XmlRpcValue request;
+  XmlRpcValue response;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  return call(master, "lookupNode", request, response) ? text(element(response, 2)) : std::string();  // [1, text, URI]
+}
+
+XmlRpcClient* SlaveApi::client(const std::string& node)
+{
+  std::unique_ptr<XmlRpcClient>& client = clients_[node];
+  if (client == nullptr)
+  {
+    std::string host;
+    std::uint32_t port = 0;
+    if (!ros::network::splitURI(uri(node), host, port))
+      return nullptr;
+    client = std::make_unique<XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
+  }
+  return client.get();
+}
+
+bool masterAnswers()
+{
+  XmlRpcClient master(ros::master::getHost().c_str(), static_cast<int>(ros::master::getPort()), "/");
+  XmlRpcValue request;
+  XmlRpcValue response;
+  request[0] = ros::this_node::getName();
+  return call(master, "getPid", request, response);
+}
+
+}  // namespace frictional_contact_sim
