@@ -4,7 +4,7 @@ import re
 
 PAGE = pathlib.Path('docs/interfaces.md')
 READ = re.compile(r'\b(?:has|child|raw|isStruct|isList|read\w*|fail)\(\s*(?:\w+,\s*)?"(\w+)"')
-ADVERTISED = re.compile(r'\b(?:advertise\w*(?:<[^;"]*>)?|subscribe\w*(?:<[^;"]*>)?|empty|add)\(\s*"([\w/]+)"')
+ADVERTISED = re.compile(r'\b(?:advertise\w*(?:<[^;"]*>)?|subscribe\w*(?:<[^;"]*>)?|empty|add)\(\s*(?:\w+, )?"([\w/]+)"')
 KEY_LIST = re.compile(r'expectMap\(\{([^}]*)\}')
 # Kind, files, names in them, and how many there are at least: a reader that is written anew must not escape the check.
 SOURCES = [

@@ -33,7 +33,7 @@ constexpr double HASLINGER_SLOWEST = 0.2;
 /// ... or whose convex problem takes more steps than this.
 constexpr int HASLINGER_INNER_STEPS = 100;
 /// Impulses of the interior point are a self-stress where they are so many times those of every law alone.
-constexpr double LARGEST_IMPULSES = 1e3;
+constexpr double LARGEST_IMPULSES = 20.0;
 /// What a first turn reached is a better start for the others when it is below this share of the residual before it.
 constexpr double WORTH_KEEPING = 1e-3;
 

@@ -13,7 +13,7 @@
 
 namespace frictional_contact_sim
 {
-/// INTERFACES.md, section 3: 0 all well, 1 something did not converge, 2 bad input.
+/// Exit codes (docs/interfaces.md): 0 all well, 1 something did not converge, 2 bad input.
 constexpr int SUCCESS = 0;
 constexpr int NOT_CONVERGED = 1;
 constexpr int BAD_INPUT = 2;
