@@ -214,7 +214,7 @@ TEST(EnergyTest, OfAThrownBlockIsTheTextbookSum)
   forwardKinematics(loaded.model, q, data);
   forwardVelocities(loaded.model, v, data);
   // 1/2 m v^2 + 1/2 w.I w = 13.5 + (0.1 x 0.25 + 0.2 x 1 + 0.25 x 4) / 2; m g h = 3 x 9.81 x 1.5
-  EXPECT_NEAR(kineticEnergy(loaded.model, data), 13.5 + 0.6125, 1e-14);
+  EXPECT_NEAR(kineticEnergy(loaded.model, data, v), 13.5 + 0.6125, 1e-14);
   EXPECT_NEAR(potentialEnergy(loaded.model, data, Eigen::Vector3d(0, 0, -9.81)), 44.145, 1e-13);
 }
 
