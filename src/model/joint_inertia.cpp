@@ -161,8 +161,9 @@ public:
     if (!given.empty())
       lines.push_back("moves no inertia and gets min_joint_inertia: " + given);
     if (!following.empty())
-      lines.push_back("moves no inertia and follows its mimic, with an inertia that the joint followed does not feel: " +
-                      following);
+      lines.push_back(
+          "moves no inertia and follows its mimic, with an inertia that the joint followed does not feel: " +
+          following);
     if (!held_up.empty())
       lines.push_back("without mass or with a singular inertia matrix, held up by what it carries: " + held_up);
     return lines;
@@ -272,8 +273,8 @@ private:
 
   bool isGiven(int joint) const
   {
-    return std::any_of(parts_.begin(), parts_.end(),
-                       [joint](const Part& part) { return part.joint == joint && part.is_given; });
+    return std::any_of(
+        parts_.begin(), parts_.end(), [joint](const Part& part) { return part.joint == joint && part.is_given; });
   }
 
   const std::string& linkName(const Part& part) const { return model_.links[part.joint].name; }

@@ -10,8 +10,8 @@
  *
  *   moves no inertia    at a position without special angles its pivot of M = L^T L (what a joint feels while all that
  *                       it carries is free to move) is zero: it gets min_joint_inertia
- *   the same, follows   (mimic) what keeps the leader's inertia to 1e-7: the row moves it, and the leader must not feel it
- *   held up             by what it carries, but for special positions (gimbal lock): 1e-9 of what it moves
+ *   the same, follows   (mimic) what keeps the leader's inertia to 1e-7: the row moves it, and the leader must not feel
+ * it held up             by what it carries, but for special positions (gimbal lock): 1e-9 of what it moves
  *
  * What is added stands in MultibodyModel::armature (revolute, prismatic, planar): coupled to nothing, so no other
  * joint's motion changes, and without weight. The link of a floating joint gets mass and moments of its own instead
@@ -27,9 +27,9 @@ namespace frictional_contact_sim
 {
 /**
  * @brief Adds inertia to the joints that need it, see above.
- * @param least [kg m^2, kg for coordinates along which the links slide] > 0; unset: DEFAULT_JOINT_INERTIA, or 1e-6 of the
- * whole body's mass (times its radius of gyration squared) where that is less. Never less than 1e-9 of what the joint
- * carries: round-off.
+ * @param least [kg m^2, kg for coordinates along which the links slide] > 0; unset: DEFAULT_JOINT_INERTIA, or 1e-6 of
+ * the whole body's mass (times its radius of gyration squared) where that is less. Never less than 1e-9 of what the
+ * joint carries: round-off.
  * @return warnings naming joints and values
  */
 std::vector<std::string> addJointInertia(MultibodyModel& model, const std::optional<double>& least);

@@ -249,8 +249,8 @@ void readRates(ParameterReader& reader, NodeParameters& parameters)
 /** @brief Parameters of the robot of robot_description mean nothing beside a scenario file: say so by name. */
 void warnAboutUnused(ParameterReader& reader, NodeParameters& parameters)
 {
-  for (const char* name : {"base", "base_pose", "initial_joint_positions", "disable_collisions", "min_joint_inertia", "ground", "materials",
-                           "default_friction", "default_restitution"})
+  for (const char* name : {"base", "base_pose", "initial_joint_positions", "disable_collisions", "min_joint_inertia",
+                           "ground", "materials", "default_friction", "default_restitution"})
   {
     reader.raw(name);
     if (reader.has(name))

@@ -17,9 +17,9 @@ namespace frictional_contact_sim
 std::vector<std::string> findBuriedStarts(const WorldModel& world);
 
 /**
- * @brief A line for each link whose moments of inertia cannot be those of its mass in its collision shapes: their sum is
- * a hundred times smaller than that of the shapes filled uniformly, or a hundred times larger than that about the link's
- * centre of mass.
+ * @brief A line for each link whose moments of inertia cannot be those of its mass in its collision shapes: their sum
+ * is a hundred times smaller than that of the shapes filled uniformly, or a hundred times larger than that about the
+ * link's centre of mass.
  * @param body index of the body
  */
 std::vector<std::string> findImplausibleInertia(const WorldModel& world, int body);

@@ -179,8 +179,9 @@ void setWrenches(const BodySpec& spec, const Draft& body)
 
 BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
 {
-  LoadedModel loaded = spec.urdf_path.empty() ? loadUrdf(spec.urdf_xml, "robot_description", spec.base, spec.min_joint_inertia)
-                                              : loadUrdfFile(spec.urdf_path, spec.base, spec.min_joint_inertia);
+  LoadedModel loaded = spec.urdf_path.empty()
+                           ? loadUrdf(spec.urdf_xml, "robot_description", spec.base, spec.min_joint_inertia)
+                           : loadUrdfFile(spec.urdf_path, spec.base, spec.min_joint_inertia);
   for (const std::string& warning : loaded.warnings)
     warnings.push_back("body '" + spec.name + "': " + warning);
   BodyModel model(std::move(loaded.model));
@@ -298,8 +299,7 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
              });
   }
   for (size_t b = 0; b < world->bodies.size(); ++b)
-    atSource(scenario.bodies[b],
-             [&]() { placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world); });
+    atSource(scenario.bodies[b], [&]() { placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world); });
   if (scenario.ground)
   {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

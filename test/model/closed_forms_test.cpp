@@ -39,8 +39,7 @@ TEST(ThesisDoublePendulumTest, MassGyroscopicAndExternalTermsAreThoseOfAppendixA
   const LoadedModel loaded = loadUrdf(thesisPendulum(m1, l1, m2, l2), "pendulum", BaseType::AUTO);
   const MultibodyModel& model = loaded.model;
   ASSERT_EQ(model.nv, 2);
-  ASSERT_EQ(loaded.warnings.size(), 1u);  // point masses: singular inertia, by name
-  EXPECT_NE(loaded.warnings[0].find("'second'"), std::string::npos);
+  EXPECT_TRUE(loaded.warnings.empty());  // point masses off their axes: both joints move inertia
 
   Eigen::Matrix2d turn;
   turn << 1, 0, 1, 1;

@@ -54,8 +54,7 @@ TEST_F(ResourcePathTest, AnyNumberOfSlashesInAPackageUriIsOne)
 {
   for (int k = 0; k < 200; ++k)
   {
-    const std::string uri =
-        "package:" + slashes(2) + "slash_robot" + slashes(1) + "meshes" + slashes(1) + fileName();
+    const std::string uri = "package:" + slashes(2) + "slash_robot" + slashes(1) + "meshes" + slashes(1) + fileName();
     EXPECT_EQ(resolvePath(uri, "/"), file_.string()) << uri;
   }
 }
@@ -65,7 +64,9 @@ TEST_F(ResourcePathTest, FileUrisWithAndWithoutHostAreAbsolute)
   const std::string inside = folder_.string().substr(1) + "/slash_robot/meshes/";
   for (int k = 0; k < 200; ++k)
   {
-    const std::string head = random_() % 3 == 0 ? "file:/" : random_() % 2 == 0 ? "file://localhost/" : "file:" + slashes(3);
+    const std::string head = random_() % 3 == 0   ? "file:/"
+                             : random_() % 2 == 0 ? "file://localhost/"
+                                                  : "file:" + slashes(3);
     const std::string uri = head + inside + fileName();
     EXPECT_EQ(resolvePath(uri, "/no/such/folder"), file_.string()) << uri;
   }

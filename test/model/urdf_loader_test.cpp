@@ -172,16 +172,15 @@ TEST(InertiaTest, LeavesAndPointMassesOnTheirAxisGetTheLeastInertia)
 
 TEST(InertiaTest, HipsOfNoInertiaAreHeldUpByTheLegEvenInGimbalLock)
 {
-  const std::string text =
-      robot(link("trunk", inertial(9.0, "1 1 1")) + link("hip_1", "") + link("hip_2", "") +
-            link("thigh", inertial(1.0, "0.1 0.1 0.01", {0, 0, -0.2})) +
-            joint("yaw", "continuous", "trunk", "hip_1", "<axis xyz='0 0 1'/>") +
-            joint("roll", "continuous", "hip_1", "hip_2", "<axis xyz='1 0 0'/>") +
-            joint("pitch", "continuous", "hip_2", "thigh", "<axis xyz='0 1 0'/>"));
+  const std::string text = robot(link("trunk", inertial(9.0, "1 1 1")) + link("hip_1", "") + link("hip_2", "") +
+                                 link("thigh", inertial(1.0, "0.1 0.1 0.01", {0, 0, -0.2})) +
+                                 joint("yaw", "continuous", "trunk", "hip_1", "<axis xyz='0 0 1'/>") +
+                                 joint("roll", "continuous", "hip_1", "hip_2", "<axis xyz='1 0 0'/>") +
+                                 joint("pitch", "continuous", "hip_2", "thigh", "<axis xyz='0 1 0'/>"));
   const LoadedModel loaded = loadUrdf(text, "robot", BaseType::FLOATING);
-  EXPECT_THAT(loaded.warnings, testing::ElementsAre(testing::AllOf(
-                                   testing::HasSubstr("held up by what it carries"), testing::HasSubstr("'hip_1'"),
-                                   testing::HasSubstr("'hip_2'"))));
+  EXPECT_THAT(loaded.warnings,
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("held up by what it carries"),
+                                                  testing::HasSubstr("'hip_1'"), testing::HasSubstr("'hip_2'"))));
   EXPECT_LT(loaded.model.armature.maxCoeff(), 2e-9);
   MultibodyData data(loaded.model);
   Eigen::VectorXd q = zeroPosition(loaded.model);
@@ -194,16 +193,14 @@ TEST(InertiaTest, HipsOfNoInertiaAreHeldUpByTheLegEvenInGimbalLock)
 TEST(InertiaTest, MasslessThumbFollowsItsMimicWithoutALoadOnTheLeader)
 {
   const std::string mimic = "<mimic joint='finger' multiplier='-2'/>";
-  const std::string text =
-      robot(link("palm", BODY) + link("finger", inertial(0.01, "1e-5 1e-5 1e-5")) + link("thumb", "") +
-            link("tip", "") + joint("finger", "continuous", "palm", "finger") +
-            joint("thumb", "continuous", "palm", "thumb", mimic) +
-            joint("tip", "continuous", "thumb", "tip", "<mimic joint='thumb' multiplier='3'/>"));
+  const std::string text = robot(link("palm", BODY) + link("finger", inertial(0.01, "1e-5 1e-5 1e-5")) +
+                                 link("thumb", "") + link("tip", "") + joint("finger", "continuous", "palm", "finger") +
+                                 joint("thumb", "continuous", "palm", "thumb", mimic) +
+                                 joint("tip", "continuous", "thumb", "tip", "<mimic joint='thumb' multiplier='3'/>"));
   const LoadedModel loaded = loadUrdf(text, "hand", BaseType::FLOATING);
-  EXPECT_THAT(loaded.warnings,
-              testing::ElementsAre(testing::AllOf(testing::HasSubstr("follows its mimic"),
-                                                  testing::HasSubstr("'thumb' (follows 'finger')"),
-                                                  testing::HasSubstr("'tip' (follows 'thumb')"))));
+  EXPECT_THAT(loaded.warnings, testing::ElementsAre(testing::AllOf(testing::HasSubstr("follows its mimic"),
+                                                                   testing::HasSubstr("'thumb' (follows 'finger')"),
+                                                                   testing::HasSubstr("'tip' (follows 'thumb')"))));
   EXPECT_EQ(countAltered(loaded.model), 2);
   const double felt = 4.0 * armature(loaded.model, "thumb") + 36.0 * armature(loaded.model, "tip");
   EXPECT_NEAR(felt, 2e-7 * 1e-5, 1e-15);
@@ -216,9 +213,9 @@ TEST(InertiaTest, FloatingBaseWithoutInertiaGetsAMassThatFalls)
   EXPECT_EQ(dust.model.links[0].inertia.rotational, Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
   // A rod without thickness keeps its own moments.
   const LoadedModel rod = loadUrdf(robot(link("rod", inertial(1.0, "0.08 0.08 0"))), "rod", BaseType::FLOATING, 1e-4);
-  EXPECT_LT((rod.model.links[0].inertia.rotational - Eigen::Matrix3d(Eigen::Vector3d(0.08, 0.08, 1e-4).asDiagonal()))
-                .norm(),
-            1e-16);
+  EXPECT_LT(
+      (rod.model.links[0].inertia.rotational - Eigen::Matrix3d(Eigen::Vector3d(0.08, 0.08, 1e-4).asDiagonal())).norm(),
+      1e-16);
 }
 
 TEST(InertiaTest, BrokenTriangleInequalityIsAWarning)

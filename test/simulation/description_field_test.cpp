@@ -211,7 +211,8 @@ struct MimicForest
       const double offset = dice.uniform(-0.5, 0.5);
       angles.push_back(followed < 0 || with_cycle ? dice.uniform(-1.0, 1.0)
                                                   : multiplier * angles[static_cast<size_t>(followed)] + offset);
-      links += "<link name='l" + name + "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+      links += "<link name='l" + name +
+               "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
                "ixz='0' iyz='0'/></inertial></link>";
       std::string joint = "<joint name='j" + name + "' type='continuous'><parent link='world'/><child link='l" + name +
                           "'/><axis xyz='0 0 1'/>";
@@ -259,12 +260,12 @@ TEST(DescriptionFieldTest, RandomMimicForestsStartClosedAndStayClosed)
     for (int step = 0; step < 20; ++step)
       ASSERT_TRUE(simulator.step().converged());
     for (const Joint& joint : simulator.model(0).joints)
-      if (joint.mimic.joint >= 0)
-        EXPECT_NEAR(simulator.position(0)[joint.q_index],
-                    joint.mimic.multiplier *
-                            simulator.position(0)[simulator.model(0).joints[joint.mimic.joint].q_index] +
-                        joint.mimic.offset,
-                    1e-9);
+    {
+      if (joint.mimic.joint < 0)
+        continue;
+      const double followed = simulator.position(0)[simulator.model(0).joints[joint.mimic.joint].q_index];
+      EXPECT_NEAR(simulator.position(0)[joint.q_index], joint.mimic.multiplier * followed + joint.mimic.offset, 1e-9);
+    }
   }
 }
 
@@ -296,8 +297,12 @@ TEST(DescriptionFieldTest, JointAtItsLimitInFreeFallStaysThere)
       return;
     const auto simulator = run(loadScenarioFile(field(path)));
     for (const Joint& joint : simulator->model(0).joints)
+    {
       if (velocitySize(joint.type) == 1 && joint.limit.lower > 0.0)
+      {
         EXPECT_NEAR(simulator->position(0)[joint.q_index], limit, 1e-9);
+      }
+    }
   }
 }
 
