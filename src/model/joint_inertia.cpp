@@ -17,7 +17,7 @@ namespace
 constexpr double LEAST_PIVOT_RATIO = 1e-10;
 constexpr double ROUND_OFF = 1e-12;  ///< of a link's inertia about an axis, relative to its largest
 constexpr double HELD_UP_SHARE = 1e-9;  ///< of what a weak joint carries
-constexpr double FOLLOWER_SHARE = 1e-7;  ///< of what its leader moves
+constexpr double UNFELT_SHARE = 1e-7;  ///< of what a joint carries, or its leader moves: nobody notices
 constexpr double BODY_SHARE = 1e-6;  ///< of the body, largest of the default
 
 /** Coordinates of one joint that are given the same: those along which, or those about which its links move. */
@@ -50,7 +50,9 @@ Part slidingPart(const Joint& joint, int index)
 Eigen::Matrix3d axesWithoutInertia(const RigidInertia& inertia)
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia.rotational);
-  const double least = ROUND_OFF * principal.eigenvalues().cwiseAbs().maxCoeff();
+  // A point mass has the square of its centre's round-off.
+  const double least = ROUND_OFF * principal.eigenvalues().cwiseAbs().maxCoeff() +
+                       ROUND_OFF * ROUND_OFF * inertia.mass * inertia.center.squaredNorm();
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
   for (int k = 0; k < 3; ++k)
     if (!(principal.eigenvalues()[k] > least))
@@ -118,7 +120,9 @@ public:
       if (part == nullptr)
         return;  // the factorization at the start position has the last word
       part->is_given = true;
-      add(*part, std::max(part->slides ? least_sliding_ : least_turning_, floor(*part)));
+      const double least = part->slides ? least_sliding_ : least_turning_;
+      const double load = carried(*part);
+      add(*part, std::max(load > 0.0 ? std::min(least, UNFELT_SHARE * load) : least, floor(*part)));
     }
   }
 
@@ -131,7 +135,7 @@ public:
       if (!part.is_given || leader < 0)
         continue;
       const double felt = data_.mass_matrix(model_.joints[leader].v_index, model_.joints[leader].v_index);
-      const double light = std::max(FOLLOWER_SHARE * felt / (ratio * ratio), floor(part));
+      const double light = std::max(UNFELT_SHARE * felt / (ratio * ratio), floor(part));
       if (light < part.added)
         add(part, light);
     }
@@ -231,6 +235,22 @@ private:
         found = &part;
     }
     return found;
+  }
+
+  /** What the part moves at the generic position, links that it turns about their own centre; 0 up to round-off. */
+  double carried(const Part& part) const
+  {
+    if (model_.joints[part.joint].type == JointType::FLOATING && !part.slides)
+    {
+      const WorldInertia& whole = data_.composite_inertia[part.joint];
+      const double steiner = whole.mass > 0.0 ? whole.moment.squaredNorm() / whole.mass : 0.0;
+      const double about_center = 0.5 * whole.rotational.trace() - steiner;
+      return about_center > ROUND_OFF * steiner ? about_center : 0.0;
+    }
+    double load = 0.0;
+    for (int k = part.first; k < part.first + part.size; ++k)
+      load = std::max(load, links_alone_[k] > round_off_[k] ? links_alone_[k] : 0.0);
+    return load;
   }
 
   /** Least that is above round-off. */

@@ -8,10 +8,11 @@
  * the root that takes part in it moves a link of no inertia about its own axis: a *weak* joint. So only weak joints are
  * looked at, and with something on the diagonal of each of them M is positive definite at every position:
  *
- *   moves no inertia    at a position without special angles its pivot of M = L^T L (what a joint feels while all that
- *                       it carries is free to move) is zero: it gets min_joint_inertia
- *   the same, follows   (mimic) what keeps the leader's inertia to 1e-7: the row moves it, and the leader must not feel
- * it held up             by what it carries, but for special positions (gimbal lock): 1e-9 of what it moves
+ * - It moves no inertia: at a position without special angles its pivot of M = L^T L (what a joint feels while all that
+ *   it carries is free to move) is zero. It gets min_joint_inertia, but where it carries something that moves on its own
+ *   (two hinges on one line) at most 1e-7 of that, which is not felt.
+ * - It moves none and follows (mimic): 1e-7 of what its leader moves; the row moves it, the leader must not feel it.
+ * - It is held up by what it carries but for special positions (gimbal lock): 1e-9 of what it carries.
  *
  * What is added stands in MultibodyModel::armature (revolute, prismatic, planar): coupled to nothing, so no other
  * joint's motion changes, and without weight. The link of a floating joint gets mass and moments of its own instead

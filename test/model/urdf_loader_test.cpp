@@ -142,16 +142,28 @@ TEST(InertiaTest, JointNearestTheRootThatMovesNothingGetsTheLeastInertia)
   const std::string text = robot(link("world", "") + link("cross", "") + link("arm", BODY) +
                                  joint("first", "continuous", "world", "cross", "<axis xyz='1 0 0'/>") +
                                  joint("second", "continuous", "cross", "arm", "<axis xyz='1 0 0'/>"));
-  for (const double least : {1e-3, 1e-6})
+  for (const double least : {1e-3, 2e-9})
   {
     const LoadedModel loaded = loadUrdf(text, "robot", BaseType::AUTO, least);
-    EXPECT_EQ(armature(loaded.model, "first"), least);
+    // 1e-7 of the arm's 0.1 kg m^2 at most, so that it is not felt.
+    EXPECT_NEAR(armature(loaded.model, "first"), std::min(least, 1e-8), 1e-20);
     EXPECT_EQ(countAltered(loaded.model), 1);
     EXPECT_THAT(loaded.warnings, testing::ElementsAre(testing::AllOf(testing::HasSubstr("min_joint_inertia"),
                                                                      testing::HasSubstr("'first'"))));
   }
-  // An arm of 1 kg with the polar moment 0.15 kg m^2: a millionth of it is less than the default.
-  EXPECT_NEAR(armature(loadUrdf(text, "robot", BaseType::AUTO).model, "first"), 0.15e-6, 1e-15);
+}
+
+TEST(InertiaTest, DefaultIsAMillionthOfASmallBody)
+{
+  const auto load = [](double mass, const std::string& moments)
+  {
+    return loadUrdf(robot(link("trunk", inertial(mass, moments)) + link("cap", "") +
+                          joint("turn", "continuous", "trunk", "cap")),
+                    "robot", BaseType::FLOATING)
+        .model;
+  };
+  EXPECT_EQ(armature(load(10.0, "9 9 9"), "turn"), DEFAULT_JOINT_INERTIA);
+  EXPECT_NEAR(armature(load(0.001, "1e-6 1e-6 1e-6"), "turn"), 1.5e-12, 1e-24);
 }
 
 TEST(InertiaTest, LeavesAndPointMassesOnTheirAxisGetTheLeastInertia)
@@ -212,9 +224,9 @@ TEST(InertiaTest, FloatingBaseWithoutInertiaGetsAMassThatFalls)
   EXPECT_EQ(dust.model.totalMass(), 1e-4);
   EXPECT_EQ(dust.model.links[0].inertia.rotational, Eigen::Matrix3d(1e-4 * Eigen::Matrix3d::Identity()));
   // A rod without thickness keeps its own moments.
-  const LoadedModel rod = loadUrdf(robot(link("rod", inertial(1.0, "0.08 0.08 0"))), "rod", BaseType::FLOATING, 1e-4);
+  const LoadedModel rod = loadUrdf(robot(link("rod", inertial(1.0, "0.08 0.08 0"))), "rod", BaseType::FLOATING, 1e-9);
   EXPECT_LT(
-      (rod.model.links[0].inertia.rotational - Eigen::Matrix3d(Eigen::Vector3d(0.08, 0.08, 1e-4).asDiagonal())).norm(),
+      (rod.model.links[0].inertia.rotational - Eigen::Matrix3d(Eigen::Vector3d(0.08, 0.08, 1e-9).asDiagonal())).norm(),
       1e-16);
 }
 

@@ -74,7 +74,7 @@ TEST(JointInertiaTest, MassMatrixIsPositiveDefiniteAtEveryPosition)
       Eigen::VectorXd solved = data.mass_matrix * x;
       const Eigen::VectorXd right = solved;
       solveMassMatrix(loaded.model, data, solved);
-      EXPECT_LT((data.mass_matrix * solved - right).norm(), 1e-10 * (data.mass_matrix.norm() + right.norm()));
+      EXPECT_LE((data.mass_matrix * solved - right).norm(), 1e-10 * (data.mass_matrix.norm() + right.norm()));
     }
   }
   EXPECT_GT(altered, static_cast<int>(SEEDS) / 4);
@@ -117,8 +117,12 @@ Scenario freeScene(RandomCase& random, double gravity, double time_step)
   }
   const MultibodyModel model = loadUrdf(body.urdf_xml, "random", body.base).model;
   for (const Joint& joint : model.joints)
-    if (velocitySize(joint.type) == 1 && joint.mimic.joint < 0)
-      body.joints[joint.name] = {std::clamp(0.0, joint.limit.lower, joint.limit.upper), random.dice.uniform(-0.5, 0.5)};
+  {
+    if (velocitySize(joint.type) != 1 || joint.mimic.joint >= 0)
+      continue;
+    const double start = std::clamp(0.0, joint.limit.lower, joint.limit.upper);
+    body.joints[joint.name] = {start, start == 0.0 ? random.dice.uniform(-0.5, 0.5) : 0.0};  // no impact at the start
+  }
   scene.bodies.push_back(body);
   return scene;
 }
