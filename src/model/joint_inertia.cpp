@@ -16,7 +16,7 @@ namespace
 /// with true ratios below 1e-8 are not known.
 constexpr double LEAST_PIVOT_RATIO = 1e-10;
 constexpr double ROUND_OFF = 1e-12;  ///< of a link's inertia about an axis, relative to its largest
-constexpr double HELD_UP_SHARE = 1e-9;  ///< of what a weak joint carries
+constexpr double LEAST_SHARE = 1e-9;  ///< of what a joint carries: less drowns in round-off
 constexpr double UNFELT_SHARE = 1e-7;  ///< of what a joint carries, or its leader moves: nobody notices
 constexpr double BODY_SHARE = 1e-6;  ///< of the body, largest of the default
 
@@ -27,6 +27,7 @@ struct Part
   int first = 0;  ///< in v
   int size = 0;
   bool slides = false;
+  double load = 0.0;  ///< what it carries, before anything is added [kg] or [kg m^2]
   bool is_given = false;  ///< min_joint_inertia
   double added = 0.0;  ///< [kg] or [kg m^2]
 };
@@ -109,6 +110,8 @@ public:
     links_alone_ = data_.mass_matrix.diagonal();
     for (int k = 0; k < model_.nv; ++k)
       round_off_.push_back(ROUND_OFF * largestTerm(k));
+    for (Part& part : parts_)
+      part.load = carried(part);
     setLeast(least);
   }
 
@@ -121,8 +124,8 @@ public:
         return;  // the factorization at the start position has the last word
       part->is_given = true;
       const double least = part->slides ? least_sliding_ : least_turning_;
-      const double load = carried(*part);
-      add(*part, std::max(load > 0.0 ? std::min(least, UNFELT_SHARE * load) : least, floor(*part)));
+      const double unfelt = part->load > 0.0 ? std::min(least, UNFELT_SHARE * part->load) : least;
+      add(*part, std::max(unfelt, floor(*part)));
     }
   }
 
@@ -145,7 +148,7 @@ public:
   {
     for (Part& part : parts_)
       if (!part.is_given)
-        add(part, floor(part));
+        add(part, std::max(UNFELT_SHARE * part.load, floor(part)));
   }
 
   std::vector<std::string> warnings() const
@@ -258,7 +261,7 @@ private:
   {
     double least = 0.0;
     for (int k = part.first; k < part.first + part.size; ++k)
-      least = std::max({least, HELD_UP_SHARE * links_alone_[k], 10.0 * round_off_[k]});
+      least = std::max({least, LEAST_SHARE * links_alone_[k], 10.0 * round_off_[k]});
     return least;
   }
 

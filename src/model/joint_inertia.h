@@ -12,7 +12,7 @@
  *   it carries is free to move) is zero. It gets min_joint_inertia, but where it carries something that moves on its own
  *   (two hinges on one line) at most 1e-7 of that, which is not felt.
  * - It moves none and follows (mimic): 1e-7 of what its leader moves; the row moves it, the leader must not feel it.
- * - It is held up by what it carries but for special positions (gimbal lock): 1e-9 of what it carries.
+ * - It is held up by what it carries but for special positions (gimbal lock): 1e-7 of what it carries.
  *
  * What is added stands in MultibodyModel::armature (revolute, prismatic, planar): coupled to nothing, so no other
  * joint's motion changes, and without weight. The link of a floating joint gets mass and moments of its own instead

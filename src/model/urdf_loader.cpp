@@ -168,7 +168,7 @@ private:
     joint.parent = parent;
     joint.placement = placement;
     if (joint.type != JointType::FLOATING)
-      joint.axis = Eigen::Vector3d(urdf_joint.axis.x, urdf_joint.axis.y, urdf_joint.axis.z).normalized();
+      joint.axis = Eigen::Vector3d(urdf_joint.axis.x, urdf_joint.axis.y, urdf_joint.axis.z).stableNormalized();
     const bool one_coordinate = velocitySize(joint.type) == 1;
     if (urdf_joint.limits && one_coordinate)
     {

@@ -91,9 +91,9 @@ void symmetrise(const std::string& path, SparseRows& M)
   const SparseRows transposed = M.transpose();
   if (lower != upper)
   {
+    // Not by assigning to the diagonal: an entry that is not stored has no place to write to.
     const Eigen::VectorXd diagonal = M.diagonal();
-    M = SparseRows(M + transposed);
-    M.diagonal() = diagonal;
+    M = SparseRows(M + transposed) - SparseRows(diagonal.asDiagonal());
     M.makeCompressed();
     return;
   }

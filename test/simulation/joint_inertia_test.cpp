@@ -4,10 +4,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
+#include "frictional_contact_sim/simulation/scenario_error.h"
+#include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "support/audited_simulator.h"
 #include "support/massless_links.h"
@@ -136,6 +139,31 @@ TEST(JointInertiaTest, EveryStepIsSolvedAndKeepsEnergyAndMomentum)
     AuditedSimulator simulator(freeScene(random, seed % 2 == 0 ? 0.0 : 9.81, 1e-3));
     for (int step = 0; step < 50; ++step)
       ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
+  }
+}
+
+/** The key of a scenario reaches the joint; what is not above zero is refused by name. */
+TEST(JointInertiaTest, LeastInertiaIsAKeyOfABody)
+{
+  const std::string path = ::testing::TempDir() + "/joint_inertia_test.urdf";
+  std::ofstream(path) << "<robot name='r'><link name='world'/><link name='cap'/><joint name='turn' type='continuous'>"
+                         "<parent link='world'/><child link='cap'/></joint></robot>";
+  const auto load = [&](const std::string& value)
+  { return loadScenario("bodies: [{name: r, urdf: " + path + ", min_joint_inertia: " + value + "}]", "scene.yaml"); };
+  EXPECT_EQ(Simulator(load("0.25")).model(0).armature, Eigen::VectorXd::Constant(1, 0.25));
+  for (const std::string bad : {"0", "-1", "nan", "much"})
+  {
+    try
+    {
+      load(bad);
+      FAIL() << bad;
+    }
+    catch (const ScenarioError& error)
+    {
+      const std::string message = error.what();
+      for (const std::string& part : {std::string("scene.yaml:1"), std::string("min_joint_inertia"), "'" + bad + "'"})
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
   }
 }
 
