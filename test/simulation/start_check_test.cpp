@@ -21,7 +21,8 @@ std::vector<std::string> inertiaWarnings(const std::string& urdf)
   Scenario scene;
   addBody(scene, "body", urdf, poseAt(0.0, 0.0, 0.0)).base = BaseType::FLOATING;
   std::vector<std::string> found;
-  for (const std::string& warning : loadWorldModel(scene)->warnings)
+  const std::shared_ptr<const WorldModel> world = loadWorldModel(scene);
+  for (const std::string& warning : world->warnings)
     if (warning.find("moments of inertia") != std::string::npos)
       found.push_back(warning);
   return found;
