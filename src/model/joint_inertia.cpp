@@ -18,7 +18,7 @@ constexpr double LEAST_PIVOT_RATIO = 1e-10;
 constexpr double ROUND_OFF = 1e-12;  ///< of a link's inertia about an axis, relative to its largest
 constexpr double LEAST_SHARE = 1e-9;  ///< of what a joint carries: less drowns in round-off
 constexpr double UNFELT_SHARE = 1e-7;  ///< of what a joint carries, or its leader moves: nobody notices
-constexpr double BODY_SHARE = 1e-6;  ///< of the body, largest of the default
+constexpr double BODY_SHARE = 1e-6;  ///< of the body: the default
 
 /** Coordinates of one joint that are given the same: those along which, or those about which its links move. */
 struct Part
@@ -198,9 +198,9 @@ private:
       polar += 0.5 * inertia.rotational.trace() +
                inertia.mass * (data_.link_pose[i] * inertia.center - center).squaredNorm();
     }
-    least_sliding_ = std::min(least_sliding_, BODY_SHARE * mass);
+    least_sliding_ = BODY_SHARE * mass;
     if (polar > 0.0)
-      least_turning_ = std::min(least_turning_, BODY_SHARE * polar);
+      least_turning_ = BODY_SHARE * polar;
   }
 
   /** @return coordinate whose pivot vanishes, -1 = M is positive definite */

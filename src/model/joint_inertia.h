@@ -9,8 +9,8 @@
  * looked at, and with something on the diagonal of each of them M is positive definite at every position:
  *
  * - It moves no inertia: at a position without special angles its pivot of M = L^T L (what a joint feels while all that
- *   it carries is free to move) is zero. It gets min_joint_inertia, but where it carries something that moves on its own
- *   (two hinges on one line) at most 1e-7 of that, which is not felt.
+ *   it carries is free to move) is zero. It gets min_joint_inertia, but where it carries something that moves on its
+ * own (two hinges on one line) at most 1e-7 of that, which is not felt.
  * - It moves none and follows (mimic): 1e-7 of what its leader moves; the row moves it, the leader must not feel it.
  * - It is held up by what it carries but for special positions (gimbal lock): 1e-7 of what it carries.
  *
@@ -28,9 +28,10 @@ namespace frictional_contact_sim
 {
 /**
  * @brief Adds inertia to the joints that need it, see above.
- * @param least [kg m^2, kg for coordinates along which the links slide] > 0; unset: DEFAULT_JOINT_INERTIA, or 1e-6 of
- * the whole body's mass (times its radius of gyration squared) where that is less. Never less than 1e-9 of what the
- * joint carries: round-off.
+ * @param least [kg m^2, kg for coordinates along which the links slide] > 0; unset: 1e-6 of the body's mass (times its
+ * radius of gyration squared), DEFAULT_JOINT_INERTIA where it has none: relative to the body, since contacts on links
+ * of very different inertia are hard to solve, and nobody feels the size of what is coupled to nothing. Never less than
+ * 1e-9 of what the joint carries: round-off.
  * @return warnings naming joints and values
  */
 std::vector<std::string> addJointInertia(MultibodyModel& model, const std::optional<double>& least);

@@ -26,7 +26,7 @@ enum class BaseType
   FIXED
 };
 
-/// Of a joint that moves none, where nothing is said and the body is not small, see loadUrdf [kg m^2] or [kg].
+/// Of a joint that moves none, where nothing is said and the body has no mass, see loadUrdf [kg m^2] or [kg].
 constexpr double DEFAULT_JOINT_INERTIA = 1e-6;
 
 struct LoadedModel
@@ -39,9 +39,8 @@ struct LoadedModel
  * @brief Reads a URDF document.
  * @param xml the document
  * @param source name for messages (a path or "robot_description"); relative mesh paths are relative to its folder
- * @param min_joint_inertia > 0, given to joints that move no inertia [kg m^2], [kg] where they slide; unset:
- * DEFAULT_JOINT_INERTIA, or 1e-6 of the body's mass (times its radius of gyration squared) where that is less, so that
- * it is small beside what a small body has
+ * @param min_joint_inertia > 0, given to joints that move no inertia [kg m^2], [kg] where they slide; unset: 1e-6 of the
+ * body's mass (times its radius of gyration squared), DEFAULT_JOINT_INERTIA where it has none
  * @throws ModelError broken XML, two roots, negative inertia, unknown mesh, ...
  */
 LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base,
