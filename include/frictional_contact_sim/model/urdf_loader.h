@@ -39,8 +39,8 @@ struct LoadedModel
  * @brief Reads a URDF document.
  * @param xml the document
  * @param source name for messages (a path or "robot_description"); relative mesh paths are relative to its folder
- * @param min_joint_inertia > 0, given to joints that move no inertia [kg m^2], [kg] where they slide; unset: 1e-6 of the
- * body's mass (times its radius of gyration squared), DEFAULT_JOINT_INERTIA where it has none
+ * @param min_joint_inertia > 0, given to joints that move no inertia [kg m^2], [kg] where they slide; unset: 1e-6 of
+ * the body's mass (times its radius of gyration squared), DEFAULT_JOINT_INERTIA where it has none
  * @throws ModelError broken XML, two roots, negative inertia, unknown mesh, ...
  */
 LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base,
