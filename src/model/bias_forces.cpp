@@ -97,9 +97,9 @@ void addWrench(const MultibodyModel& model, const MultibodyData& data, int link,
     tau[k] += data.motion_subspace.col(k).dot(wrench);
 }
 
-double kineticEnergy(const MultibodyModel& model, const MultibodyData& data)
+double kineticEnergy(const MultibodyModel& model, const MultibodyData& data, const VectorIn& v)
 {
-  double energy = 0.0;
+  double energy = 0.5 * model.armature.dot(v.cwiseAbs2());
   for (size_t i = 0; i < model.links.size(); ++i)
     energy += 0.5 * data.link_velocity[i].dot(multiply(data.link_inertia[i], data.link_velocity[i]));
   return energy;

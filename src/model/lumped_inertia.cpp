@@ -4,7 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/model_error.h"
 #include "urdf_schema.h"
 
@@ -12,10 +11,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Least articulated over composite inertia of a coordinate that counts as positive; round-off of their difference is
-/// some 1e-15, and chains with true ratios below 1e-8 are not known.
-constexpr double LEAST_PIVOT_RATIO = 1e-10;
-
 /** Principal moments [kg m^2], ascending. */
 Eigen::Vector3d principalMoments(const RigidInertia& inertia)
 {
@@ -34,35 +29,6 @@ std::string describe(const Link& link)
 bool isJudged(const MultibodyModel& model, size_t link)
 {
   return velocitySize(model.joints[link].type) > 0;
-}
-
-/** @return coordinate whose inertia vanishes at q, -1 = the mass matrix is positive definite */
-int singularCoordinate(const MultibodyModel& model, const Eigen::VectorXd& q)
-{
-  MultibodyData data(model);
-  forwardKinematics(model, q, data);
-  computeMassMatrix(model, data);
-  factorizeMassMatrix(model, Eigen::VectorXd(), data);
-  for (int k = model.nv - 1; k >= 0; --k)  // the order of the factorization: what comes later may not be computed
-  {
-    const double root = data.mass_factor(k, k);
-    if (!(root > 0.0) || root * root <= LEAST_PIVOT_RATIO * data.mass_matrix(k, k))
-      return k;
-  }
-  return -1;
-}
-
-/** A position without special angles. */
-Eigen::VectorXd genericPosition(const MultibodyModel& model)
-{
-  Eigen::VectorXd q = zeroPosition(model);
-  for (const Joint& joint : model.joints)
-  {
-    if (joint.type != JointType::FLOATING)
-      for (int k = joint.q_index; k < joint.q_index + positionSize(joint.type); ++k)
-        q[k] = 0.7 + 0.3 * std::sin(1.7 * k);
-  }
-  return q;
 }
 
 std::string join(const std::vector<std::string>& names)
@@ -102,7 +68,6 @@ RigidInertia combine(const std::vector<RigidInertia>& parts)
 
 std::vector<std::string> checkInertia(const MultibodyModel& model, const std::string& source)
 {
-  std::vector<std::string> weak;
   std::vector<std::string> impossible;
   for (size_t i = 0; i < model.links.size(); ++i)
   {
@@ -114,10 +79,8 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
     const Eigen::Vector3d moments = principalMoments(link.inertia);
     const double round_off = 1e-12 * moments.cwiseAbs().maxCoeff();
     if (moments[0] < -round_off)
-      failAt(source, 0, describe(link) + ": expected a positive definite inertia matrix");
-    if (link.inertia.mass <= 0.0 || moments[0] <= round_off)
-      weak.push_back(link.name);
-    else if (moments[0] + moments[1] < (1.0 - 1e-6) * moments[2])
+      failAt(source, 0, describe(link) + ": expected principal moments >= 0");
+    if (moments[0] + moments[1] < (1.0 - 1e-6) * moments[2])
       impossible.push_back(link.name);
   }
   std::vector<std::string> warnings;
@@ -127,21 +90,6 @@ std::vector<std::string> checkInertia(const MultibodyModel& model, const std::st
         "the inertia of no real mass distribution (two principal moments add up to less than the third): " +
         join(impossible));
   }
-  if (weak.empty())
-    return warnings;
-  const int coordinate = singularCoordinate(model, genericPosition(model));
-  if (coordinate >= 0)
-  {
-    const int link = model.dof_link[coordinate];
-    const Joint& joint = model.joints[link];
-    failAt(source, 0,
-           describe(model.links[link]) + ", and nothing it carries makes up for it: a " +
-               (joint.name.empty() ? "floating base" : "moving link (joint '" + joint.name + "')") +
-               " needs an <inertial>, or a fixed base or joint");
-  }
-  warnings.push_back("without mass or with a singular inertia matrix, held up by what it carries: " + join(weak));
-  if (singularCoordinate(model, zeroPosition(model)) >= 0)
-    warnings.push_back("the mass matrix is singular at the zero position, because of " + join(weak));
   return warnings;
 }
 

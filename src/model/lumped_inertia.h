@@ -20,12 +20,10 @@ RigidInertia transform(const RigidInertia& inertia, const Eigen::Isometry3d& pla
 RigidInertia combine(const std::vector<RigidInertia>& parts);
 
 /**
- * @brief Judges the moving links after lumping.
- * A link with mass and three positive principal moments is good. Without, it may still move with what it carries: then
- * the mass matrix decides, which must be positive definite (two configurations; the least articulated inertia
- * along a coordinate at least 1e-10 of the composite inertia). The link of a FIXED base is not judged.
+ * @brief Judges the moving links after lumping: numbers must be finite, principal moments not negative. What is zero is
+ * judged joint by joint (joint_inertia.h). The link of a FIXED base is not judged.
  * @throws ModelError naming source, link and values
- * @return warnings
+ * @return warnings: moments of no real distribution of mass
  */
 std::vector<std::string> checkInertia(const MultibodyModel& model, const std::string& source);
 

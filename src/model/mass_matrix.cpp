@@ -51,6 +51,7 @@ void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
                       data.mass_matrix(k, j) = entry;
                       data.mass_matrix(j, k) = entry;
                     });
+      data.mass_matrix(j, j) += model.armature[j];
     }
     if (joint.parent >= 0)
     {

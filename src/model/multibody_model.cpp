@@ -113,6 +113,7 @@ void finalize(MultibodyModel& model)
     model.link_dof[i] = previous;
     model.nq += positionSize(joint.type);
   }
+  model.armature = Eigen::VectorXd::Zero(model.nv);
 }
 
 }  // namespace frictional_contact_sim

@@ -1,5 +1,6 @@
 #include <rospack/rospack.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,9 @@ namespace frictional_contact_sim
 namespace
 {
 namespace fs = std::filesystem;
+
+const std::string PACKAGE_SCHEME = "package:";
+const std::string FILE_SCHEME = "file:";
 
 std::string environment(const char* name)
 {
@@ -75,31 +79,54 @@ std::string decodePercent(const std::string& text)
   return decoded;
 }
 
+std::string withoutLeadingSlashes(const std::string& text)
+{
+  return text.substr(std::min(text.find_first_not_of('/'), text.size()));
+}
+
+/** A path as written, or percent-decoded where only that exists. */
+fs::path existing(const fs::path& folder, const std::string& path)
+{
+  const fs::path plain = folder / path;
+  std::error_code ignored;
+  return fs::exists(plain, ignored) ? plain : folder / decodePercent(path);
+}
+
+/** package://name/path; any number of slashes is one, as for ROS's own retriever. */
+fs::path locateInPackage(const std::string& uri)
+{
+  const std::string rest = withoutLeadingSlashes(uri.substr(PACKAGE_SCHEME.size()));
+  const size_t slash = std::min(rest.find('/'), rest.size());
+  const std::string name = rest.substr(0, slash);
+  const std::string package = name.empty() ? "" : findPackage(name);
+  if (package.empty())
+  {
+    throw ModelError("'" + uri + "': no package '" + name + "' on ROS_PACKAGE_PATH = '" +
+                     environment("ROS_PACKAGE_PATH") + "'");
+  }
+  return existing(package, withoutLeadingSlashes(rest.substr(slash)));
+}
+
+/**
+ * file:/path, file:///path, file://localhost/path and more slashes are one absolute path; file://path and file:path
+ * without one, which is no URI but in use, is relative to the folder.
+ */
+fs::path locateFile(const std::string& uri, const std::string& folder)
+{
+  std::string path = uri.substr(FILE_SCHEME.size());
+  const std::string host = "//localhost/";
+  if (startsWith(path, host))
+    path.erase(0, host.size() - 1);
+  const size_t slashes = path.size() - withoutLeadingSlashes(path).size();
+  return existing(slashes == 0 || slashes == 2 ? folder : "/", withoutLeadingSlashes(path));
+}
+
 fs::path locate(const std::string& uri, const std::string& folder)
 {
-  static const std::string PACKAGE = "package://";
-  static const std::string FILE = "file://";
-  if (startsWith(uri, PACKAGE))
-  {
-    const size_t slash = uri.find('/', PACKAGE.size());
-    const std::string name = uri.substr(PACKAGE.size(), slash == std::string::npos ? slash : slash - PACKAGE.size());
-    const std::string package = findPackage(name);
-    if (package.empty())
-    {
-      throw ModelError("'" + uri + "': no package '" + name + "' on ROS_PACKAGE_PATH = '" +
-                       environment("ROS_PACKAGE_PATH") + "'");
-    }
-    return slash == std::string::npos ? fs::path(package) : fs::path(package) / uri.substr(slash + 1);
-  }
-  if (startsWith(uri, FILE))
-  {
-    // file://localhost/path and file:///path name the same file.
-    std::string path = uri.substr(FILE.size());
-    path.erase(0, startsWith(path, "localhost/") ? std::string("localhost").size() : 0);
-    const fs::path plain(path);
-    std::error_code ignored;
-    return fs::exists(plain, ignored) ? plain : fs::path(decodePercent(path));
-  }
+  if (startsWith(uri, PACKAGE_SCHEME))
+    return locateInPackage(uri);
+  if (startsWith(uri, FILE_SCHEME))
+    return locateFile(uri, folder);
   if (uri.find("://") != std::string::npos)
     throw ModelError("'" + uri + "': expected package://, file:// or a path");
   return fs::path(folder) / uri;  // an absolute uri replaces the folder
@@ -113,7 +140,7 @@ std::string resolvePath(const std::string& uri, const std::string& folder)
   if (!fs::is_regular_file(path, ignored))
   {
     const std::string searched =
-        startsWith(uri, "package://") ? " (ROS_PACKAGE_PATH = '" + environment("ROS_PACKAGE_PATH") + "')" : "";
+        startsWith(uri, PACKAGE_SCHEME) ? " (ROS_PACKAGE_PATH = '" + environment("ROS_PACKAGE_PATH") + "')" : "";
     throw ModelError("'" + uri + "': there is no file " + path.string() + searched);
   }
   return path.string();

@@ -136,7 +136,9 @@ void checkLimit(XMLElement& joint, const std::string& label, const std::string& 
 void checkMimic(const XMLElement& joint, const Names& joints, const std::string& label, const std::string& source)
 {
   const XMLElement* follower = &joint;
-  for (size_t steps = 0; steps <= joints.size(); ++steps)
+  std::string way;
+  std::set<const XMLElement*> passed;
+  while (passed.insert(follower).second)
   {
     const XMLElement* mimic = follower->FirstChildElement("mimic");
     if (mimic == nullptr)
@@ -150,8 +152,9 @@ void checkMimic(const XMLElement& joint, const Names& joints, const std::string&
                  "coordinate (revolute, continuous, prismatic)");
     }
     follower = leader->second;
+    way += (way.empty() ? "'" : " - '") + leader->first + "'";
   }
-  failAt(source, joint.GetLineNum(), label + ": <mimic> follows itself");
+  failAt(source, joint.GetLineNum(), label + ": <mimic> follows itself: " + way);
 }
 
 void checkJoint(XMLElement& joint, const Names& joints, const std::string& source, OmissionTally& omissions)
@@ -246,7 +249,7 @@ void readGazebo(XMLElement& gazebo, const Names& links, const Names& joints, con
     else
     {
       document.warnings.push_back("link " + label + ": Gazebo's mu1 and mu2 are not equal, neither is used (friction " +
-                                  "is isotropic here): the material decides");
+                                  "is isotropic here): the material of the scenario decides");
     }
   }
   for (XMLElement* child = gazebo.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())

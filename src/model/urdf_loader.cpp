@@ -9,6 +9,7 @@
 #include <mutex>
 #include <sstream>
 
+#include "joint_inertia.h"
 #include "lumped_inertia.h"
 #include "urdf_document.h"
 #include "urdf_schema.h"
@@ -167,7 +168,7 @@ private:
     joint.parent = parent;
     joint.placement = placement;
     if (joint.type != JointType::FLOATING)
-      joint.axis = Eigen::Vector3d(urdf_joint.axis.x, urdf_joint.axis.y, urdf_joint.axis.z).normalized();
+      joint.axis = Eigen::Vector3d(urdf_joint.axis.x, urdf_joint.axis.y, urdf_joint.axis.z).stableNormalized();
     const bool one_coordinate = velocitySize(joint.type) == 1;
     if (urdf_joint.limits && one_coordinate)
     {
@@ -279,19 +280,21 @@ private:
 };
 }  // namespace
 
-LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base)
+LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base,
+                     const std::optional<double>& min_joint_inertia)
 {
   const UrdfDocument document = readDocument(xml, source);
   const urdf::ModelInterfaceSharedPtr urdf = parseQuietly(document.text, source);
   LoadedModel loaded;
   loaded.model = ModelBuilder(document, *urdf, source).build(base);
   loaded.warnings = document.warnings;
-  const std::vector<std::string> inertia_warnings = checkInertia(loaded.model, source);
-  loaded.warnings.insert(loaded.warnings.end(), inertia_warnings.begin(), inertia_warnings.end());
+  for (const std::vector<std::string>& lines :
+       {checkInertia(loaded.model, source), addJointInertia(loaded.model, min_joint_inertia)})
+    loaded.warnings.insert(loaded.warnings.end(), lines.begin(), lines.end());
   return loaded;
 }
 
-LoadedModel loadUrdfFile(const std::string& path, BaseType base)
+LoadedModel loadUrdfFile(const std::string& path, BaseType base, const std::optional<double>& min_joint_inertia)
 {
   std::ifstream file(path);
   std::error_code ignored;
@@ -299,7 +302,7 @@ LoadedModel loadUrdfFile(const std::string& path, BaseType base)
     failAt(path, 0, "cannot be read, expected a URDF file");
   std::ostringstream content;
   content << file.rdbuf();
-  return loadUrdf(content.str(), path, base);
+  return loadUrdf(content.str(), path, base, min_joint_inertia);
 }
 
 BaseType parseBaseType(const std::string& text)

@@ -11,6 +11,7 @@ extern "C"
 #include <fclib.h>
 }
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -29,7 +30,7 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 constexpr double SYMMETRY_TOLERANCE = 1e-6;
 
 /** Triplets of a stored matrix, shifted by a row and a column offset, transposed on demand. */
-void appendTriplets(const fclib_matrix& matrix, bool transpose, int row_offset, int column_offset, Triplets& triplets)
+void appendTriplets(const FclibMatrix& matrix, bool transpose, int row_offset, int column_offset, Triplets& triplets)
 {
   const auto add = [&](int row, int column, double value)
   {
@@ -38,15 +39,11 @@ void appendTriplets(const fclib_matrix& matrix, bool transpose, int row_offset, 
     else
       triplets.emplace_back(row_offset + row, column_offset + column, value);
   };
-  if (matrix.nz >= 0)
-  {
-    for (int k = 0; k < matrix.nz; ++k)
-      add(matrix.i[k], matrix.p[k], matrix.x[k]);
-    return;
-  }
-  const int outer = matrix.nz == -1 ? matrix.n : matrix.m;
+  for (size_t k = 0; k < static_cast<size_t>(std::max(matrix.nz, 0)); ++k)
+    add(matrix.i[k], matrix.p[k], matrix.x[k]);
+  const int outer = matrix.nz >= 0 ? 0 : matrix.nz == -1 ? matrix.columns : matrix.rows;
   for (int k = 0; k < outer; ++k)
-    for (int entry = matrix.p[k]; entry < matrix.p[k + 1]; ++entry)
+    for (auto entry = static_cast<size_t>(matrix.p[k]); entry < static_cast<size_t>(matrix.p[k + 1]); ++entry)
       if (matrix.nz == -1)
         add(matrix.i[entry], k, matrix.x[entry]);
       else
@@ -61,33 +58,15 @@ SparseRows fromTriplets(int rows, int columns, const Triplets& triplets)
   return result;
 }
 
-SparseRows toRows(const fclib_matrix* matrix, bool transpose)
+SparseRows toRows(const FclibMatrix& matrix, bool transpose)
 {
   Triplets triplets;
-  appendTriplets(*matrix, transpose, 0, 0, triplets);
-  return transpose ? fromTriplets(matrix->n, matrix->m, triplets) : fromTriplets(matrix->m, matrix->n, triplets);
+  appendTriplets(matrix, transpose, 0, 0, triplets);
+  return transpose ? fromTriplets(matrix.columns, matrix.rows, triplets)
+                   : fromTriplets(matrix.rows, matrix.columns, triplets);
 }
 
-Eigen::VectorXd toVector(const double* values, int count)
-{
-  if (count == 0)
-    return Eigen::VectorXd();
-  return Eigen::Map<const Eigen::VectorXd>(values, count);
-}
-
-FclibInfo toInfo(const fclib_info* info)
-{
-  FclibInfo result;
-  if (info == nullptr)
-    return result;
-  const auto text = [](const char* value) { return std::string(value == nullptr ? "" : value); };
-  result.title = text(info->title);
-  result.description = text(info->description);
-  result.math_info = text(info->math_info);
-  return result;
-}
-
-std::vector<Law> coulombLaws(int dimension, int contacts, const double* mu)
+std::vector<Law> coulombLaws(int dimension, int contacts, const Eigen::VectorXd& mu)
 {
   std::vector<Law> laws(static_cast<size_t>(contacts));
   for (int i = 0; i < contacts; ++i)
@@ -112,9 +91,9 @@ void symmetrise(const std::string& path, SparseRows& M)
   const SparseRows transposed = M.transpose();
   if (lower != upper)
   {
+    // Not by assigning to the diagonal: an entry that is not stored has no place to write to.
     const Eigen::VectorXd diagonal = M.diagonal();
-    M = SparseRows(M + transposed);
-    M.diagonal() = diagonal;
+    M = SparseRows(M + transposed) - SparseRows(diagonal.asDiagonal());
     M.makeCompressed();
     return;
   }
@@ -132,50 +111,46 @@ void symmetrise(const std::string& path, SparseRows& M)
 
 void readGlobal(const std::string& path, const FclibShape& shape, FclibProblem& result)
 {
-  const std::unique_ptr<fclib_global, void (*)(fclib_global*)> stored(fclib_read_global(path.c_str()),
-                                                                      fclib_delete_global);
-  if (!stored)
-    throw std::runtime_error(path + ": libfclib could not read the global problem");
+  const std::string root = "/fclib_global";
   IncrementalProblem& problem = result.global;
-  problem.M = toRows(stored->M, false);
+  problem.M = toRows(readMatrix(path, root + "/M"), false);
   symmetrise(path, problem.M);
-  problem.f = -toVector(stored->f, shape.velocities);
-  problem.H = toRows(stored->H, true);
-  problem.w = toVector(stored->w, shape.rows);
-  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, stored->mu);
+  problem.f = -readNumbers(path, root + "/vectors/f");
+  problem.H = toRows(readMatrix(path, root + "/H"), true);
+  problem.w = readNumbers(path, root + "/vectors/w");
+  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, readNumbers(path, root + "/vectors/mu"));
   if (shape.bilaterals > 0)
   {
-    problem.G = toRows(stored->G, true);
-    problem.b = toVector(stored->b, shape.bilaterals);
+    problem.G = toRows(readMatrix(path, root + "/G"), true);
+    problem.b = readNumbers(path, root + "/vectors/b");
   }
   else
     problem.G.resize(0, shape.velocities);
-  result.info = toInfo(stored->info);
+  result.info = readInfo(path, root);
   validate(problem);
 }
 
 void readLocal(const std::string& path, const FclibShape& shape, FclibProblem& result)
 {
-  const std::unique_ptr<fclib_local, void (*)(fclib_local*)> stored(fclib_read_local(path.c_str()), fclib_delete_local);
-  if (!stored)
-    throw std::runtime_error(path + ": libfclib could not read the local problem");
+  const std::string root = "/fclib_local";
   DelassusProblem& problem = result.local;
-  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, stored->mu);
+  problem.laws = coulombLaws(shape.dimension, shape.rows / shape.dimension, readNumbers(path, root + "/vectors/mu"));
   problem.laws.resize(problem.laws.size() + static_cast<size_t>(shape.bilaterals), {LawType::BILATERAL, 0.0});
   const int size = shape.rows + shape.bilaterals;
   Triplets triplets;
-  appendTriplets(*stored->W, false, 0, 0, triplets);
+  appendTriplets(readMatrix(path, root + "/W"), false, 0, 0, triplets);
   problem.q.resize(size);
-  problem.q.head(shape.rows) = toVector(stored->q, shape.rows);
+  problem.q.head(shape.rows) = readNumbers(path, root + "/vectors/q");
   if (shape.bilaterals > 0)
   {
-    appendTriplets(*stored->V, false, 0, shape.rows, triplets);
-    appendTriplets(*stored->V, true, shape.rows, 0, triplets);
-    appendTriplets(*stored->R, false, shape.rows, shape.rows, triplets);
-    problem.q.tail(shape.bilaterals) = toVector(stored->s, shape.bilaterals);
+    const FclibMatrix V = readMatrix(path, root + "/V");
+    appendTriplets(V, false, 0, shape.rows, triplets);
+    appendTriplets(V, true, shape.rows, 0, triplets);
+    appendTriplets(readMatrix(path, root + "/R"), false, shape.rows, shape.rows, triplets);
+    problem.q.tail(shape.bilaterals) = readNumbers(path, root + "/vectors/s");
   }
   problem.W.assign(fromTriplets(size, size, triplets), problem.laws);
-  result.info = toInfo(stored->info);
+  result.info = readInfo(path, root);
   validate(problem);
 }
 

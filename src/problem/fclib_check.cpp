@@ -8,10 +8,14 @@ namespace frictional_contact_sim
 {
 namespace
 {
+/// Deflate packs at most 1032 bytes into one: a dataset larger than so many files has a damaged size.
+constexpr size_t LARGEST_DATASET = 1100;
+
 class Checker
 {
 public:
-  explicit Checker(const std::string& path) : path_(path), file_(open(path), H5Fclose)
+  explicit Checker(const std::string& path)
+    : path_(path), file_(open(path), H5Fclose), largest_(LARGEST_DATASET * std::filesystem::file_size(path))
   {
     if (!file_.valid())
       fail("not readable as HDF5", "an FCLib file");
@@ -66,17 +70,30 @@ public:
         fail(name + "[" + std::to_string(k) + "] is " + std::to_string(values[k]), "a finite number");
   }
 
-  /** Checks a matrix group and returns its shape. */
-  std::pair<int, int> checkMatrix(const std::string& name) const;
+  /** Checks a matrix group and returns its content. */
+  FclibMatrix readMatrix(const std::string& name) const;
+  /** The same, its shape only. */
+  std::pair<int, int> checkMatrix(const std::string& name) const
+  {
+    const FclibMatrix matrix = readMatrix(name);
+    return {matrix.rows, matrix.columns};
+  }
 
-  void checkText(const std::string& name) const
+  /** Empty where there is none. */
+  std::string readText(const std::string& name) const
   {
     if (!exists(name))
-      return;
+      return "";
     const H5Handle dataset(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
     const H5Handle type(dataset.valid() ? H5Dget_type(dataset.id()) : -1, H5Tclose);
     if (!type.valid() || H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
       fail(name + " is not a string of fixed length", "a text");
+    const H5Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+    std::string text(bufferSize(name, count, H5Tget_size(type.id())), '\0');
+    if (!text.empty() && H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
+      fail(name + " cannot be read", "intact data");
+    return text.substr(0, text.find('\0'));
   }
 
 private:
@@ -87,6 +104,15 @@ private:
     if (!std::filesystem::is_regular_file(path) || H5Fis_hdf5(path.c_str()) <= 0)
       throw std::runtime_error(path + ": not an HDF5 file, expected an FCLib file");
     return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  }
+
+  /** Bytes of a dataset; a damaged file may ask for anything. */
+  size_t bufferSize(const std::string& name, hssize_t count, size_t size) const
+  {
+    if (count < 0 || (size > 0 && static_cast<size_t>(count) > largest_ / size))
+      fail(name + " has " + std::to_string(count) + " entries of " + std::to_string(size) + " bytes",
+           "at most " + std::to_string(largest_) + " bytes");
+    return static_cast<size_t>(count) * size;
   }
 
   template <typename Number>
@@ -102,9 +128,7 @@ private:
     if (H5Tget_class(type.id()) != wanted)
       fail(name + " has the wrong type", wanted == H5T_INTEGER ? "integers" : "floating point numbers");
     const hssize_t count = H5Sget_simple_extent_npoints(space.id());
-    if (count < 0)
-      fail(name + " has no data", "numbers");
-    std::vector<Number> values(static_cast<size_t>(count));
+    std::vector<Number> values(bufferSize(name, count, sizeof(Number)) / sizeof(Number));
     if (count > 0 && H5Dread(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       fail(name + " cannot be read", "intact data");
     return values;
@@ -112,9 +136,10 @@ private:
 
   std::string path_;
   H5Handle file_;
+  size_t largest_;  ///< dataset [bytes]
 };
 
-std::pair<int, int> Checker::checkMatrix(const std::string& name) const
+FclibMatrix Checker::readMatrix(const std::string& name) const
 {
   if (!isGroup(name))
     fail(name + " is missing", "a matrix group");
@@ -169,9 +194,9 @@ std::pair<int, int> Checker::checkMatrix(const std::string& name) const
     checkReals(name + "/conditioning", 1);
     checkReals(name + "/determinant", 1);
     readInteger(name + "/rank");
-    checkText(name + "/comment");
+    readText(name + "/comment");
   }
-  return {rows, columns};
+  return {rows, columns, nz, p, i, x};
 }
 
 std::string shapeText(std::pair<int, int> shape)
@@ -269,11 +294,29 @@ FclibShape checkFclib(const std::string& path)
     if (mu[k] < 0.0)
       checker.fail(root + "/vectors/mu[" + std::to_string(k) + "] is " + std::to_string(mu[k]), ">= 0");
   for (const char* text : {"/info/title", "/info/description", "/info/math_info"})
-    checker.checkText(root + text);
+    checker.readText(root + text);
   shape.has_solution = checker.isGroup("/solution");
   if (checker.isGroup("/guesses") && checker.exists("/guesses/number_of_guesses"))
     shape.guesses = checker.readInteger("/guesses/number_of_guesses");
   return shape;
+}
+
+FclibMatrix readMatrix(const std::string& path, const std::string& group)
+{
+  return Checker(path).readMatrix(group);
+}
+
+Eigen::VectorXd readNumbers(const std::string& path, const std::string& dataset)
+{
+  const std::vector<double> values = Checker(path).readReals(dataset);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+FclibInfo readInfo(const std::string& path, const std::string& root)
+{
+  const Checker checker(path);
+  return {checker.readText(root + "/info/title"), checker.readText(root + "/info/description"),
+          checker.readText(root + "/info/math_info")};
 }
 
 Solution readSolutionGroup(const std::string& path, const std::string& group, const FclibShape& shape)

@@ -61,8 +61,23 @@ struct FclibShape
   int guesses = 0;
 };
 
-/** @brief Checks everything libfclib relies on. @throws std::runtime_error in one line. */
+/** @brief A stored matrix as CSparse has it: triplets (nz >= 0), compressed columns (-1) or compressed rows (-2). */
+struct FclibMatrix
+{
+  int rows = 0, columns = 0, nz = 0;
+  std::vector<int> p;  ///< triplets: column indices (see fclib.h); else pointers
+  std::vector<int> i;
+  std::vector<double> x;
+};
+
+/** @brief Checks everything that is read later. @throws std::runtime_error in one line. */
 FclibShape checkFclib(const std::string& path);
+
+/** @brief Reads parts of a checked file. libfclib is not asked: it ends the process on what it cannot read. */
+FclibMatrix readMatrix(const std::string& path, const std::string& group);
+Eigen::VectorXd readNumbers(const std::string& path, const std::string& dataset);
+/** @param root "/fclib_local" or "/fclib_global" */
+FclibInfo readInfo(const std::string& path, const std::string& root);
 
 /** @brief Reads the vectors of a solution group of a checked file; missing ones stay empty. */
 Solution readSolutionGroup(const std::string& path, const std::string& group, const FclibShape& shape);

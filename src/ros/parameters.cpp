@@ -150,6 +150,10 @@ void readRobot(ParameterReader& reader, const std::string& robot_description, No
   for (const std::string& joint : positions.names())
     positions.read(joint, body.joints[joint].position, anyNumber());
   reader.read("disable_collisions", body.disable_collisions);
+  double min_joint_inertia = DEFAULT_JOINT_INERTIA;
+  reader.read("min_joint_inertia", min_joint_inertia, positive());
+  if (reader.has("min_joint_inertia"))
+    body.min_joint_inertia = min_joint_inertia;
   readGround(reader, parameters);
   readMaterials(reader, parameters.scenario.materials);
   parameters.scenario.name = "robot_description";
@@ -245,8 +249,8 @@ void readRates(ParameterReader& reader, NodeParameters& parameters)
 /** @brief Parameters of the robot of robot_description mean nothing beside a scenario file: say so by name. */
 void warnAboutUnused(ParameterReader& reader, NodeParameters& parameters)
 {
-  for (const char* name : {"base", "base_pose", "initial_joint_positions", "disable_collisions", "ground", "materials",
-                           "default_friction", "default_restitution"})
+  for (const char* name : {"base", "base_pose", "initial_joint_positions", "disable_collisions", "min_joint_inertia",
+                           "ground", "materials", "default_friction", "default_restitution"})
   {
     reader.raw(name);
     if (reader.has(name))

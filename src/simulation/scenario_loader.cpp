@@ -258,8 +258,9 @@ void readDisabledCollisions(const YamlReader& list, BodySpec& body)
 BodySpec readBody(const YamlReader& map)
 {
   map.expectMap({"name", "urdf", "base", "pose", "velocity", "joints", "commands", "hold_initial_position", "wrenches",
-                 "motion", "material", "disable_collisions"});
+                 "motion", "material", "disable_collisions", "min_joint_inertia"});
   BodySpec body;
+  body.source = map.place();
   body.name = map.child("name").text();
   if (!std::regex_match(body.name, std::regex("[A-Za-z][A-Za-z0-9_]*")))
     map.child("name").fail("found '" + body.name + "', expected letters, digits and _, a letter first");
@@ -292,6 +293,8 @@ BodySpec readBody(const YamlReader& map)
     body.material = map.child("material").text();
   if (map.has("disable_collisions"))
     readDisabledCollisions(map.child("disable_collisions"), body);
+  if (map.has("min_joint_inertia"))
+    body.min_joint_inertia = map.child("min_joint_inertia").number(1e-30, 1e30, "a number > 0");
   return body;
 }
 

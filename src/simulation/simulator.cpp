@@ -97,7 +97,7 @@ void Simulator::Impl::bookEnergies()
   {
     if (body.model.tree.nv == 0)
       continue;
-    state.energy.kinetic += kineticEnergy(body.model.tree, body.end);
+    state.energy.kinetic += kineticEnergy(body.model.tree, body.end, body.state.v);
     state.energy.potential += potentialEnergy(body.model.tree, body.end, context.gravity);
   }
   report.energy = state.energy;

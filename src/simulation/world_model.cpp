@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
+#include "start_check.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double LARGEST_NUMBER =
-    1e6;  ///< of an initial position or velocity [SI]: beyond it nothing is meant seriously
+/// Of an initial velocity or joint position [SI]: beyond it nothing is meant seriously.
+constexpr double LARGEST_NUMBER = 1e6;
+/// Of a coordinate of the base [m]: map coordinates (UTM, Web Mercator, earth-centred) are below 2.1e7, where a double
+/// still resolves 4e-9 m.
+constexpr double LARGEST_COORDINATE = 3e7;
 constexpr double DROP_HEIGHT = 0.001;  ///< lowest collision point above the ground where no pose is given [m]
 
 [[noreturn]] void fail(const std::string& body, const std::string& message)
@@ -80,6 +85,20 @@ void setInitialJoints(const BodySpec& spec, const Draft& body, std::vector<std::
     followMimic(body, static_cast<int>(j));
 }
 
+void expectBelow(const std::string& body, const std::string& key, const Eigen::Vector3d& vector, double largest,
+                 const std::string& unit)
+{
+  for (const double component : vector)
+  {
+    if (std::abs(component) < largest)
+      continue;
+    std::ostringstream text;
+    text.precision(10);
+    text << key << " has the component " << component << ", expected less than " << largest << unit;
+    fail(body, text.str());
+  }
+}
+
 void setBasePose(const Draft& body, const Eigen::Isometry3d& pose)
 {
   if (body.model.tree.joints.front().type == JointType::FLOATING)
@@ -96,9 +115,9 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
   const BodyModel& model = body.model;
   const bool floating = model.tree.joints.front().type == JointType::FLOATING;
   const Eigen::Vector3d position = spec.pose ? Eigen::Vector3d(spec.pose->translation()) : Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d* vector : {&position, &spec.linear_velocity, &spec.angular_velocity})
-    if (!(vector->cwiseAbs().maxCoeff() < LARGEST_NUMBER))
-      fail(model.name, "pose or velocity has a component that is not a number below 1e6");
+  expectBelow(model.name, "pose.xyz", position, LARGEST_COORDINATE, " m; move the scene's origin nearer");
+  expectBelow(model.name, "velocity.linear", spec.linear_velocity, LARGEST_NUMBER, " m/s");
+  expectBelow(model.name, "velocity.angular", spec.angular_velocity, LARGEST_NUMBER, " rad/s");
   setBasePose(body, spec.pose.value_or(Eigen::Isometry3d::Identity()));
   if (floating)
   {
@@ -160,8 +179,9 @@ void setWrenches(const BodySpec& spec, const Draft& body)
 
 BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
 {
-  LoadedModel loaded = spec.urdf_path.empty() ? loadUrdf(spec.urdf_xml, "robot_description", spec.base)
-                                              : loadUrdfFile(spec.urdf_path, spec.base);
+  LoadedModel loaded = spec.urdf_path.empty()
+                           ? loadUrdf(spec.urdf_xml, "robot_description", spec.base, spec.min_joint_inertia)
+                           : loadUrdfFile(spec.urdf_path, spec.base, spec.min_joint_inertia);
   for (const std::string& warning : loaded.warnings)
     warnings.push_back("body '" + spec.name + "': " + warning);
   BodyModel model(std::move(loaded.model));
@@ -219,6 +239,20 @@ void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world)
   setWrenches(spec, body);
 }
 
+/** Messages about a body begin with where it was read. */
+template <typename Load>
+void atSource(const BodySpec& spec, const Load& load)
+{
+  try
+  {
+    load();
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw std::invalid_argument((spec.source.empty() ? "" : spec.source + ": ") + error.what());
+  }
+}
+
 std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
 {
   std::vector<SurfaceSide> sides;
@@ -257,11 +291,15 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
     world->bodies.push_back(loadBody(spec, world->warnings));
     world->start.emplace_back(world->bodies.back());
     const Draft body{world->bodies.back(), world->start.back()};
-    setInitialJoints(spec, body, world->warnings);
-    setInitialBase(spec, body);
+    atSource(spec,
+             [&]()
+             {
+               setInitialJoints(spec, body, world->warnings);
+               setInitialBase(spec, body);
+             });
   }
   for (size_t b = 0; b < world->bodies.size(); ++b)
-    placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world);
+    atSource(scenario.bodies[b], [&]() { placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world); });
   if (scenario.ground)
   {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -270,6 +308,11 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
   }
   for (const std::string& pair : world->collision.disableOverlaps())
     world->warnings.push_back("links overlap at the start and will not collide: " + pair);
+  for (size_t b = 0; b < world->bodies.size(); ++b)
+    for (const std::string& line : findImplausibleInertia(*world, static_cast<int>(b)))
+      world->warnings.push_back("body '" + scenario.bodies[b].name + "': " + line);
+  for (const std::string& line : findBuriedStarts(*world))
+    world->warnings.push_back(line);
   world->pairs = PairTable(scenario.materials, surfaceSides(*world));
   world->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return world;

@@ -15,11 +15,16 @@ std::string YamlReader::found() const
   return node_.IsSequence() ? "a list of " + std::to_string(node_.size()) : "a map";
 }
 
-void YamlReader::fail(const std::string& reason) const
+std::string YamlReader::place() const
 {
   const int line = node_.IsDefined() ? node_.Mark().line + 1 : 0;
-  throw ScenarioError(file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                      (key_.empty() ? "the document" : "key '" + key_ + "'") + ": " + reason);
+  return file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
+         (key_.empty() ? "the document" : "key '" + key_ + "'");
+}
+
+void YamlReader::fail(const std::string& reason) const
+{
+  throw ScenarioError(place() + ": " + reason);
 }
 
 void YamlReader::expectMap() const

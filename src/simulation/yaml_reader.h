@@ -28,6 +28,7 @@ public:
   }
   YamlReader item(size_t index) const { return {node_[index], file_, key_ + "[" + std::to_string(index) + "]"}; }
 
+  std::string place() const;  ///< FILE:LINE: key 'KEY'
   [[noreturn]] void fail(const std::string& reason) const;
   /** Fails when the node is not a map or has a key that is not listed. */
   void expectMap(std::initializer_list<const char*> keys) const;

@@ -39,8 +39,7 @@ TEST(ThesisDoublePendulumTest, MassGyroscopicAndExternalTermsAreThoseOfAppendixA
   const LoadedModel loaded = loadUrdf(thesisPendulum(m1, l1, m2, l2), "pendulum", BaseType::AUTO);
   const MultibodyModel& model = loaded.model;
   ASSERT_EQ(model.nv, 2);
-  ASSERT_EQ(loaded.warnings.size(), 1u);  // point masses: singular inertia, by name
-  EXPECT_NE(loaded.warnings[0].find("'second'"), std::string::npos);
+  EXPECT_TRUE(loaded.warnings.empty());  // point masses off their axes: both joints move inertia
 
   Eigen::Matrix2d turn;
   turn << 1, 0, 1, 1;
@@ -214,7 +213,7 @@ TEST(EnergyTest, OfAThrownBlockIsTheTextbookSum)
   forwardKinematics(loaded.model, q, data);
   forwardVelocities(loaded.model, v, data);
   // 1/2 m v^2 + 1/2 w.I w = 13.5 + (0.1 x 0.25 + 0.2 x 1 + 0.25 x 4) / 2; m g h = 3 x 9.81 x 1.5
-  EXPECT_NEAR(kineticEnergy(loaded.model, data), 13.5 + 0.6125, 1e-14);
+  EXPECT_NEAR(kineticEnergy(loaded.model, data, v), 13.5 + 0.6125, 1e-14);
   EXPECT_NEAR(potentialEnergy(loaded.model, data, Eigen::Vector3d(0, 0, -9.81)), 44.145, 1e-13);
 }
 

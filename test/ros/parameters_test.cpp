@@ -61,7 +61,7 @@ std::string complaint(const std::string& name, const XmlRpcValue& value)
 
 TEST(ParametersTest, DefaultsAreThoseOfTheContract)
 {
-  const NodeParameters parameters = readParameters(XmlRpcValue(), ROBOT);
+  const NodeParameters parameters = readParameters(XmlRpc::XmlRpcValue(), ROBOT);
   EXPECT_EQ(parameters.scenario.time_step, 0.001);
   EXPECT_EQ(parameters.scenario.gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
   EXPECT_EQ(parameters.scenario.stopping.tolerance, 1e-8);
@@ -80,8 +80,8 @@ TEST(ParametersTest, DefaultsAreThoseOfTheContract)
 
 TEST(ParametersTest, FailureParametersOverrideTheScenarioKeyByKey)
 {
-  EXPECT_TRUE(readParameters(XmlRpcValue(), ROBOT).scenario.failure.fallback);
-  EXPECT_EQ(readParameters(XmlRpcValue(), ROBOT).scenario.failure.time_limit, 0.0);
+  EXPECT_TRUE(readParameters(XmlRpc::XmlRpcValue(), ROBOT).scenario.failure.fallback);
+  EXPECT_EQ(readParameters(XmlRpc::XmlRpcValue(), ROBOT).scenario.failure.time_limit, 0.0);
   const std::string file = testing::TempDir() + "/failure_parameters.yaml";
   std::ofstream(file) << "failure: {policy: hold, fallback: false, time_limit: 0.5}\nbodies: [{name: block, urdf: "
                       << PROJECT_DIR << "/urdf/block.urdf}]\n";
@@ -115,6 +115,7 @@ TEST(ParametersTest, ValuesReachTheScenario)
   tree["base_pose"]["xyz"] = list({0.1, 0.2, 0.3});
   tree["base_pose"]["rpy"] = list({0.0, 0.0, 1.5707963267948966});
   tree["initial_joint_positions"]["knee"] = 0.5;
+  tree["min_joint_inertia"] = 2e-6;
   tree["disable_collisions"].setSize(1);
   tree["disable_collisions"][0] = names({"thigh", "shank"});
   tree["ground"]["height"] = -1.0;
@@ -129,6 +130,8 @@ TEST(ParametersTest, ValuesReachTheScenario)
   // A quarter turn about z takes x to y; round-off of the cosine of pi/2.
   EXPECT_LT((body.pose->linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
   EXPECT_EQ(body.joints.at("knee").position, 0.5);
+  EXPECT_EQ(body.min_joint_inertia, 2e-6);
+  EXPECT_FALSE(readParameters(XmlRpc::XmlRpcValue(), ROBOT).scenario.bodies.at(0).min_joint_inertia);
   EXPECT_THAT(body.disable_collisions, ElementsAre(std::make_pair("thigh", "shank")));
   EXPECT_EQ(scenario.ground->height, -1.0);
   EXPECT_EQ(scenario.materials.pairs.at({"ground", "rubber"}).friction, 1.0);  // alphabetical order

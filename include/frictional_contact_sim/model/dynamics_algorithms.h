@@ -36,8 +36,8 @@ void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eig
 void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau);
 
-/** @brief 1/2 v^T M v from link velocities [J]. Needs forwardVelocities. */
-double kineticEnergy(const MultibodyModel& model, const MultibodyData& data);
+/** @brief 1/2 v^T M v [J], of the links from their velocities. Needs forwardVelocities at v. */
+double kineticEnergy(const MultibodyModel& model, const MultibodyData& data, const VectorIn& v);
 
 /** @brief -sum m g . c [J]. Needs forwardKinematics. */
 double potentialEnergy(const MultibodyModel& model, const MultibodyData& data, const Eigen::Vector3d& gravity);

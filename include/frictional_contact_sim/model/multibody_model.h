@@ -125,6 +125,9 @@ struct MultibodyModel
   std::vector<int> dof_run;  ///< nv: first coordinate of the unbroken run (dof_parent[i] = i - 1) that ends here
   std::vector<int> dof_link;  ///< nv: link moved by the coordinate
   std::vector<int> link_dof;  ///< links: last velocity coordinate on the way from the root to the link, -1 = none
+  /// nv: on the diagonal of the mass matrix, of coordinates whose links move none at some position, as a rotor that
+  /// turns with the joint would have it; see model/joint_inertia.h [kg m^2] or [kg]
+  Eigen::VectorXd armature;
 
   /** @return index or -1 */
   int findJoint(const std::string& joint_name) const;
@@ -133,8 +136,8 @@ struct MultibodyModel
 };
 
 /**
- * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_run, dof_link, link_dof from the joints. Call after editing
- * joints by hand.
+ * @brief Fills nq, nv, q_index, v_index, dof_parent, dof_run, dof_link, link_dof from the joints, armature with zeros.
+ * Call after editing joints by hand.
  * @throws std::invalid_argument when joints and links differ in number, a parent does not come first, or an axis is
  * not a unit vector
  */

@@ -6,10 +6,11 @@
  * Links joined by fixed joints become one body named after its first link; every link stays a Frame. Bodies come depth
  * first, joints in the order of the document (so joint_states keep that order). A capsule's length is that of its
  * cylindrical part. Gazebo's mu1 is read where mu2 is absent or equal.
- * Inertia is judged after lumping: a moving body needs mass and three positive principal moments, or what it carries
- * must keep the mass matrix positive definite (then it is named in a warning). The body of a fixed base needs none.
+ * Inertia is judged after lumping and joint by joint: what a joint moves counts, not its own link. A joint that moves
+ * none gets min_joint_inertia or follows its mimic; both are warnings. Not finite or negative ones are refused.
  * Visuals are not read: their meshes may be missing.
  */
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ enum class BaseType
   FIXED
 };
 
+/// Of a joint that moves none, where nothing is said and the body has no mass, see loadUrdf [kg m^2] or [kg].
+constexpr double DEFAULT_JOINT_INERTIA = 1e-6;
+
 struct LoadedModel
 {
   MultibodyModel model;
@@ -35,17 +39,21 @@ struct LoadedModel
  * @brief Reads a URDF document.
  * @param xml the document
  * @param source name for messages (a path or "robot_description"); relative mesh paths are relative to its folder
- * @throws ModelError broken XML, two roots, zero or not positive definite inertia of a moving body, unknown mesh, ...
+ * @param min_joint_inertia > 0, given to joints that move no inertia [kg m^2], [kg] where they slide; unset: 1e-6 of
+ * the body's mass (times its radius of gyration squared), DEFAULT_JOINT_INERTIA where it has none
+ * @throws ModelError broken XML, two roots, negative inertia, unknown mesh, ...
  */
-LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base);
+LoadedModel loadUrdf(const std::string& xml, const std::string& source, BaseType base,
+                     const std::optional<double>& min_joint_inertia = {});
 /** @brief The same for a file. */
-LoadedModel loadUrdfFile(const std::string& path, BaseType base);
+LoadedModel loadUrdfFile(const std::string& path, BaseType base, const std::optional<double>& min_joint_inertia = {});
 
 /** @brief "auto", "floating" or "fixed". @throws std::invalid_argument listing them */
 BaseType parseBaseType(const std::string& text);
 
 /**
- * @brief package://name/path (ROS_PACKAGE_PATH, through rospack), file://path, absolute, or relative to `folder`.
+ * @brief package://name/path (ROS_PACKAGE_PATH, through rospack), file:///path, absolute, or relative to `folder`. More
+ * slashes than needed are one; a path that only exists percent-decoded is decoded.
  * @throws ModelError when the package or the file does not exist
  */
 std::string resolvePath(const std::string& uri, const std::string& folder);

@@ -9,10 +9,9 @@
  *   FCLib local    u = W r + V lambda + q,  V^T r + R lambda + s = 0
  *   ours           W <- [W V; V^T R], q <- (q, s), the rows of s as BILATERAL laws behind the contacts
  *
- * Reading: the structure is checked with the HDF5 library before libfclib sees the file, because libfclib ends the
- * process on a broken one. Every defect is one std::runtime_error line: file, what was found, what was expected.
- * Triplet matrices have i = rows and p = columns, as CSparse and the files do, whatever fclib.h's comment says. Rolling
- * problems are refused.
+ * Reading: with the HDF5 library alone, because libfclib ends the process on a broken file; it writes. Every defect is
+ * one std::runtime_error line: file, what was found, what was expected. Triplet matrices have i = rows and p = columns,
+ * as CSparse and the files do, whatever fclib.h's comment says. Rolling problems are refused.
  *
  * Writing: FCLib knows Coulomb contacts of one dimension only. The others are encoded exactly:
  *   COULOMB_2D among 3D contacts   second tangential row zero

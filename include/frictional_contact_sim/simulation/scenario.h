@@ -45,6 +45,8 @@ struct BodySpec
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion;  ///< fixed base: linear, angular velocity
   std::string material = "default";
   std::vector<std::pair<std::string, std::string>> disable_collisions;  ///< pairs of links
+  std::optional<double> min_joint_inertia;  ///< see loadUrdf [kg m^2] or [kg] > 0
+  std::string source;  ///< where it was read, "FILE:LINE: key 'bodies[0]'", for messages; may be empty
 };
 
 struct GroundSpec
