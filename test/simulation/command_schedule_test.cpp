@@ -144,7 +144,9 @@ TEST(CommandScheduleTest, PositionsAreFollowed)
     EXPECT_NEAR(simulator.position(0)[0], schedule.target(time), 1.05 * 0.8 / (std::exp(1.0) * 40.0)) << time;
     const bool settled = (time > 0.5 && time <= 1.0) || (time > 1.9 + 0.1 && time <= 2.5) || time > 3.0;
     if (settled)
+    {
       EXPECT_NEAR(simulator.position(0)[0], schedule.target(time), 1e-6) << time;
+    }
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/solver/registry.h"
@@ -49,12 +48,50 @@ const std::vector<IncrementalProblem>& problems()
       options.dry = static_cast<int>(seed % 3);
       list.push_back(randomProblem(options, seed));
     }
+    for (std::uint32_t seed = 11; seed <= 16; ++seed)  // much friction: fixed points cycle, steps are shortened
+    {
+      RandomProblemOptions options;
+      options.contacts = 10;
+      options.bodies = 3;
+      IncrementalProblem problem = randomProblem(options, seed);
+      for (Law& law : problem.laws)
+        law.coefficient *= 5.0;
+      list.push_back(problem);
+    }
     RandomFamilyOptions family;
     family.contacts = 14;
     list.push_back(randomFamilyProblem(family));
     return list;
   }();
   return all;
+}
+
+/// Without a solution: something squeezed between walls that approach each other, what the last resorts are for.
+std::vector<DelassusProblem> hopeless()
+{
+  Eigen::MatrixXd W = Eigen::MatrixXd::Identity(6, 6);
+  W(0, 3) = W(3, 0) = -1.0;
+  Eigen::VectorXd q(6);
+  q << -1, 0.2, 0, -1, 0.5, 0;
+  const std::vector<Law> laws = {{LawType::COULOMB_3D, 0.5}, {LawType::COULOMB_3D, 0.5}};
+  DelassusProblem squeezed = localProblem(W, q, laws);
+  W(0, 3) = W(3, 0) = -0.999;  // nearly so
+  return {squeezed, localProblem(W, q, laws)};
+}
+
+void addOutcomes(const SolverResult& cold, const SolverResult& warm, std::vector<Outcome>& all)
+{
+  for (const SolverResult* result : {&cold, &warm})
+    all.push_back({result->status, result->iterations, result->work, result->solution.r});
+}
+
+/// An answer that is spoilt.
+Solution guessFrom(const SolverResult& result)
+{
+  Solution guess = result.solution;
+  for (Eigen::Index i = 0; i < guess.r.size(); ++i)
+    guess.r[i] = 0.7 * guess.r[i] + (i % 3 == 0 ? 0.01 : -0.02);
+  return guess;
 }
 
 std::vector<Outcome> outcomes(Solver& solver, int iterations = 150)
@@ -66,12 +103,14 @@ std::vector<Outcome> outcomes(Solver& solver, int iterations = 150)
   for (const IncrementalProblem& problem : problems())
   {
     const SolverResult cold = solver.solve(problem);
-    Solution guess = cold.solution;
-    for (Eigen::Index i = 0; i < guess.r.size(); ++i)
-      guess.r[i] = 0.7 * guess.r[i] + (i % 3 == 0 ? 0.01 : -0.02);
-    const SolverResult warm = solver.solve(problem, &guess);
-    for (const SolverResult* result : {&cold, &warm})
-      all.push_back({result->status, result->iterations, result->work, result->solution.r});
+    const Solution guess = guessFrom(cold);
+    addOutcomes(cold, solver.solve(problem, &guess), all);
+  }
+  for (const DelassusProblem& problem : hopeless())
+  {
+    const SolverResult cold = solver.solve(problem);
+    const Solution guess = guessFrom(cold);
+    addOutcomes(cold, solver.solve(problem, &guess), all);
   }
   return all;
 }
@@ -126,7 +165,7 @@ std::vector<std::string> alternatives(const SolverOption& option)
       0.5 * value,  2.0 * value, value + 1.0, value - 1.0, 0.1 * value, 10 * value, 1e3 * value, option.range.lower,
       1e-3 * value, 1.0,         1e-8,        0.5,         2.0,         30.0,       0.99};
   if (std::isfinite(option.range.upper))
-    numbers.push_back(0.5 * (option.range.lower + option.range.upper));
+    numbers.insert(numbers.end(), {0.5 * (option.range.lower + option.range.upper), 0.999 * option.range.upper});
   std::vector<std::string> texts;
   for (const double number : numbers)
   {
@@ -148,6 +187,8 @@ std::vector<SolverOptions> companions(const std::string& solver)
             {{"line_search_steps", "0"}, {"inner_iterations", "2"}}};
   if (solver == "portfolio")
     return {{},
+            {{"newton_first_rows", "0"}},
+            {{"newton_first_rows", "0"}, {"newton_try_steps", "1"}, {"haslinger_steps", "1"}, {"first_sweeps", "1"}},
             {{"newton_first_rows", "0"}, {"newton_try_rows", "0"}},
             {{"newton_first_rows", "0"}, {"newton_try_rows", "0"}, {"haslinger_steps", "1"}},
             {{"newton_first_rows", "0"},
@@ -171,13 +212,6 @@ std::vector<SolverOptions> companions(const std::string& solver)
              {"swept_first_rows", "0"},
              {"swept_steps", "1"}}};
   return {{}};
-}
-
-/// Options that no problem here can tell apart, and why.
-const std::set<std::string>& silent()
-{
-  static const std::set<std::string> names = {};
-  return names;
 }
 
 bool reaches(const SolverEntry& entry, const SolverOption& option)
@@ -233,17 +267,16 @@ TEST_P(SolverOptionsTest, AMisspeltOptionIsRefusedWithTheNearest)
     std::string wrong = option.name;
     std::swap(wrong[1], wrong[2]);
     const std::string message = complaint(entry_.name, {{wrong, option.default_value}});
-    if (wrong != option.name)
-      EXPECT_NE(message.find(std::string(entry_.name) + " has no option '" + wrong + "', did you mean '" + option.name),
-                std::string::npos)
-          << message;
+    const std::string expected =
+        std::string(entry_.name) + " has no option '" + wrong + "', did you mean '" + option.name + "'?";
+    EXPECT_TRUE(wrong == option.name || message.find(expected) != std::string::npos) << message;
   }
 }
 
 TEST_P(SolverOptionsTest, AnotherValueReachesTheMethod)
 {
   for (const SolverOption& option : entry_.options())
-    EXPECT_NE(reaches(entry_, option), silent().count(GetParam() + "." + option.name) > 0) << option.name;
+    EXPECT_TRUE(reaches(entry_, option)) << option.name;
 }
 
 TEST_P(SolverOptionsTest, RandomTextsAreTakenOrRefused)
