@@ -198,4 +198,23 @@ TEST_F(RunScenarioNameTest, OptionsOfTheMethodAreArgumentsToo)
   EXPECT_EQ(runTool("run_scenario", "--list-solvers").output, describeSolvers());
   EXPECT_EQ(runTool("compare_solvers", "--list-solvers").output, describeSolvers());
 }
+
+TEST_F(RunScenarioNameTest, WhereSeveralMethodsAreComparedAnOptionMayNameItsOwn)
+{
+  const auto refused = [](const std::string& tool, const std::string& arguments, const std::string& reason)
+  {
+    const CommandResult result = runTool(tool, arguments);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(lines(result.errors), 1) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  };
+  const std::string carter = std::string(PROJECT_DIR) + "/config/rolling/carter.yaml --compare admm,gauss_seidel ";
+  refused("rolling_contact", carter + "--option admm.penlty=1", "did you mean 'penalty'?");
+  refused("rolling_contact", carter + "--option relaxation=1", "admm has no option 'relaxation'");
+  const std::string both = "none.hdf5 --solvers admm,gauss_seidel ";
+  refused("compare_solvers", both + "--option amdm.penalty=1", "did you mean 'admm'?");
+  refused("compare_solvers", both + "--option gauss_seidel.relaxation=2", "expected a number in (0, 2)");
+  const CommandResult taken = runTool("compare_solvers", both + "--option gauss_seidel.relaxation=1.5");
+  EXPECT_NE(taken.output.find("BAD_INPUT"), std::string::npos) << taken.output;  // the file, not the option
+}
 }  // namespace
