@@ -208,9 +208,9 @@ TEST_F(RunScenarioNameTest, WhereSeveralMethodsAreComparedAnOptionMayNameItsOwn)
     EXPECT_EQ(lines(result.errors), 1) << result.errors;
     EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
   };
-  const std::string carter = std::string(PROJECT_DIR) + "/config/rolling/carter.yaml --compare admm,gauss_seidel ";
-  refused("rolling_contact", carter + "--option admm.penlty=1", "did you mean 'penalty'?");
-  refused("rolling_contact", carter + "--option relaxation=1", "admm has no option 'relaxation'");
+  const std::string cattaneo = std::string(PROJECT_DIR) + "/config/rolling/cattaneo.yaml --compare admm,gauss_seidel ";
+  refused("rolling_contact", cattaneo + "--option admm.penlty=1", "did you mean 'penalty'?");
+  refused("rolling_contact", cattaneo + "--option relaxation=1", "admm has no option 'relaxation'");
   const std::string both = "none.hdf5 --solvers admm,gauss_seidel ";
   refused("compare_solvers", both + "--option amdm.penalty=1", "did you mean 'admm'?");
   refused("compare_solvers", both + "--option gauss_seidel.relaxation=2", "expected a number in (0, 2)");
