@@ -29,6 +29,7 @@ struct CollidingBody
   std::vector<int> shapes;  ///< handles
   std::vector<std::string> frame_names;
   bool is_mounted = false;  ///< on a fixed base, no floating joint
+  bool collides_with_itself = true;
   std::vector<std::array<int, 2>> disabled;  ///< frames, the lower first; sorted
   std::vector<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape; sorted
 };
@@ -74,7 +75,7 @@ bool ShapeModel::mayCollide(int i, int k) const
   const CollidingBody& body = bodies[first.body];
   const bool is_adjacent =
       first.link == second.link || body.parent[first.link] == second.link || body.parent[second.link] == first.link;
-  return !is_adjacent &&
+  return !is_adjacent && body.collides_with_itself &&
          !contains(body.disabled, {std::min(first.frame, second.frame), std::max(first.frame, second.frame)});
 }
 }  // namespace
@@ -251,6 +252,12 @@ void CollisionWorld::disablePair(int body, const std::string& link_1, const std:
   }
   std::sort(frames.begin(), frames.end());
   insert(impl_->edit().bodies[body].disabled, frames);
+}
+
+void CollisionWorld::disableSelfCollision(int body)
+{
+  static_cast<void>(impl_->body(body));
+  impl_->edit().bodies[body].collides_with_itself = false;
 }
 
 std::vector<std::string> CollisionWorld::disableOverlaps()

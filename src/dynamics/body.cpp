@@ -123,6 +123,7 @@ BodyModel::BodyModel(MultibodyModel multibody_model)
   , reach(jointReach(tree, sizes))
   , free_link(isFreeLink(tree))
   , isotropic(isIsotropic(tree))
+  , schedules(tree.joints.size())
 {
   for (const Joint& joint : tree.joints)
     if (velocitySize(joint.type) == 1)
@@ -325,6 +326,23 @@ double servoInertia(const BodyModel& model, const MultibodyData& data, int joint
   }
   const double rest = tree.totalMass() - subtree_mass;
   return moved.type == JointType::PRISMATIC ? own + rest : own + rest * reach * reach;
+}
+
+JointCommand commandAt(const Body& body, int joint, double middle)
+{
+  const JointDrive& drive = body.state.drives[joint];
+  JointCommand command = drive.command;
+  if (!drive.is_scheduled)
+    return command;
+  command.target = body.model.schedules[joint].target(middle);
+  if (command.mode == JointCommand::Mode::EFFORT)
+    command.target = std::clamp(command.target, -drive.effort_limit, drive.effort_limit);
+  return command;
+}
+
+double commandRate(const Body& body, int joint, double middle)
+{
+  return body.state.drives[joint].is_scheduled ? body.model.schedules[joint].rate(middle) : 0.0;
 }
 
 JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& command)

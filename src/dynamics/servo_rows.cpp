@@ -49,7 +49,9 @@ void ServoRows::begin(const StepContext& context)
     const Body& body = bodies_[servo.body];
     const JointDrive& drive = body.state.drives[servo.joint];
     const int q_index = body.model.tree.joints[servo.joint].q_index;
-    servo.impulse = servoImpulse(drive.command, body.state.q[q_index], body.state.v[servo.v_index], context.dt);
+    servo.impulse =
+        servoImpulse(commandAt(body, servo.joint, context.middle), body.state.q[q_index], body.state.v[servo.v_index],
+                     context.dt, commandRate(body, servo.joint, context.middle));
     servo.bounded = servo.impulse.stiffness > 0.0 && std::isfinite(drive.effort_limit) &&
                     std::abs(drive.effort) >= BOUNDED_FRACTION * drive.effort_limit;
   }
@@ -106,6 +108,8 @@ void ServoRows::accept(const StepContext& context, const StepAnswer& answer)
   {
     Body& body = bodies_[servo.body];
     JointDrive& drive = body.state.drives[servo.joint];
+    if (!context.impact)
+      drive.command.target = commandAt(body, servo.joint, context.middle).target;
     drive.effort = servo.bounded ? answer.solution.r[servo.row] / context.dt
                                  : effort(servo, answer.solution.v[body.v_offset + servo.v_index], context.dt);
     // Of an answer beyond its round-off (1e-9) already; of a step that is held, or accepted without an answer, far.

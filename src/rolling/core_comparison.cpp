@@ -38,9 +38,9 @@ CoreProblem poseForTheCore(const ContactFlexibility& flexibility, const Eigen::V
 }
 
 CoreComparison compareWithCore(const CoreProblem& core, const FrictionalContact& contact, const std::string& solver,
-                               double tolerance)
+                               double tolerance, const SolverOptions& options)
 {
-  const std::unique_ptr<Solver> method = createSolver(solver);
+  const std::unique_ptr<Solver> method = createSolver(solver, options);
   StoppingOptions stopping;
   stopping.tolerance = tolerance;
   stopping.max_iterations = 100000;

@@ -1,98 +1,73 @@
 #include "creep_curve_reader.h"
 
-#include <fstream>
-#include <sstream>
-
-#include "frictional_contact_sim/simulation/scenario_error.h"
-#include "yaml_reader.h"
+#include "frictional_contact_sim/config/yaml_config.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-double positive(const YamlReader& map, const char* key)
+/** A list from 0 on. @param entry what each one is compared with the one before */
+std::vector<double> numbersFromZero(const ConfigNode& list)
 {
-  const YamlReader child = map.child(key);
-  const double value = child.number();
-  if (!(value > 0.0))
-    child.fail("found '" + child.text() + "', expected a number > 0");
-  return value;
-}
-
-std::vector<double> numbers(const YamlReader& list)
-{
-  list.expectSequence("numbers");
-  std::vector<double> values;
-  for (size_t i = 0; i < list.node().size(); ++i)
-    values.push_back(list.item(i).number());
+  const std::vector<double> values = list.numbers();
+  const std::vector<ConfigNode> items = list.items("numbers");
   if (values.size() < 2)
     list.fail("found " + std::to_string(values.size()) + " entries, expected at least 2");
   if (values.front() != 0.0)
-    list.item(0).fail("found '" + list.item(0).text() + "', expected 0 as the first entry");
+    items[0].failExpecting("0 as the first entry");
   return values;
 }
 
-void checkCreepage(const YamlReader& list, const std::vector<double>& creepage)
+std::vector<double> readCreepage(const ConfigNode& list)
 {
+  const std::vector<double> creepage = numbersFromZero(list);
+  const std::vector<ConfigNode> items = list.items("numbers");
   for (size_t i = 1; i < creepage.size(); ++i)
     if (!(creepage[i] > creepage[i - 1]))
-      list.item(i).fail("found '" + list.item(i).text() + "', expected more than the entry before, '" +
-                        list.item(i - 1).text() + "'");
+      items[i].failExpecting("more than the entry before, " + items[i - 1].found());
+  return creepage;
 }
 
-void checkTraction(const YamlReader& list, const std::vector<double>& traction)
+std::vector<double> readTraction(const ConfigNode& list)
 {
+  const std::vector<double> traction = numbersFromZero(list);
+  const std::vector<ConfigNode> items = list.items("numbers");
   for (size_t i = 1; i < traction.size(); ++i)
     if (!(traction[i] >= traction[i - 1]))
-      list.item(i).fail("found '" + list.item(i).text() + "', expected at least the entry before, '" +
-                        list.item(i - 1).text() + "'");
+      items[i].failExpecting("at least the entry before, " + items[i - 1].found());
   if (traction.back() != 1.0)
-    list.item(traction.size() - 1)
-        .fail("found '" + list.item(traction.size() - 1).text() + "', expected 1 as the last entry");
+    items.back().failExpecting("1 as the last entry");
+  return traction;
 }
 
-std::shared_ptr<const CreepTable> readCurve(const YamlReader& document)
+void readCurve(const ConfigNode& map, CreepTable& curve)
 {
-  document.expectMap({"creep_curve"});
-  const YamlReader map = document.child("creep_curve");
   // Modulus, Poisson's ratio and radius tell where the curve is from; the law does not use them.
-  map.expectMap({"friction", "reference_load", "creepage", "traction", "young_modulus", "poisson_ratio", "radius"});
-  auto curve = std::make_shared<CreepTable>();
-  curve->friction = positive(map, "friction");
-  curve->reference_load = positive(map, "reference_load");
-  curve->creepage = numbers(map.child("creepage"));
-  checkCreepage(map.child("creepage"), curve->creepage);
-  curve->traction = numbers(map.child("traction"));
-  checkTraction(map.child("traction"), curve->traction);
-  if (curve->traction.size() != curve->creepage.size())
-    map.child("traction")
-        .fail("found " + std::to_string(curve->traction.size()) + " entries, expected as many as creepage, " +
-              std::to_string(curve->creepage.size()));
+  const auto ignored = [](const ConfigNode&) {};
+  map.readMap({required(key("friction", curve.friction, positive())),
+               required(key("reference_load", curve.reference_load, positive())),
+               required(key("creepage", [&](const ConfigNode& list) { curve.creepage = readCreepage(list); })),
+               required(key("traction", [&](const ConfigNode& list) { curve.traction = readTraction(list); })),
+               key("young_modulus", ignored), key("poisson_ratio", ignored), key("radius", ignored)});
+  if (curve.traction.size() != curve.creepage.size())
+    map.at("traction")
+        .fail("found " + std::to_string(curve.traction.size()) + " entries, expected as many as creepage, " +
+              std::to_string(curve.creepage.size()));
   // From the first 1 on the curve is Coulomb's law: the tangent on the way back is the segment before.
-  while (curve->traction[curve->traction.size() - 2] == 1.0)
+  while (curve.traction[curve.traction.size() - 2] == 1.0)
   {
-    curve->traction.pop_back();
-    curve->creepage.pop_back();
+    curve.traction.pop_back();
+    curve.creepage.pop_back();
   }
-  return curve;
 }
 }  // namespace
 
 std::shared_ptr<const CreepTable> readCreepCurve(const std::string& path)
 {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file)
-    throw ScenarioError(path + ": cannot be read, expected a creep curve (YAML map creep_curve)");
-  try
-  {
-    return readCurve(YamlReader(YAML::Load(text.str()), path, ""));
-  }
-  catch (const YAML::Exception& error)
-  {
-    throw ScenarioError(path + ":" + std::to_string(error.mark.line + 1) + ": not valid YAML: " + error.msg);
-  }
+  auto curve = std::make_shared<CreepTable>();
+  loadYaml(path, "a creep curve")
+      .readMap({required(key("creep_curve", [&](const ConfigNode& map) { readCurve(map, *curve); }))});
+  return curve;
 }
 
 }  // namespace frictional_contact_sim

@@ -23,6 +23,16 @@ bool sameShape(const SimulationState& a, const SimulationState& b)
                     same_memory);
 }
 
+/** A drive can follow a schedule only where the world has one. */
+void checkDrives(const WorldModel& world, const SimulationState& state)
+{
+  for (size_t b = 0; b < state.bodies.size(); ++b)
+    for (size_t j = 0; j < state.bodies[b].drives.size(); ++j)
+      if (state.bodies[b].drives[j].is_scheduled && world.bodies[b].schedules[j].empty())
+        throw StateError("joint '" + world.bodies[b].tree.joints[j].name + "' of body '" + world.bodies[b].name +
+                         "' follows a command over time, expected one that this scenario has");
+}
+
 /** What the sizes do not say of a state from outside. */
 void checkNumbers(const Simulator& simulator, const SimulationState& state)
 {
@@ -179,6 +189,7 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
   if (!sameShape(state, impl_->state))
     throw StateError("the state's bodies or joints differ in number from the simulator's");
   checkNumbers(*this, state);
+  checkDrives(*impl_->world, state);
   const double dt = impl_->state.dt;
   impl_->state = state;
   impl_->updateEnds();

@@ -54,7 +54,7 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , context(makeContext(scenario))
   , contact_set(bodies, collision, world->pairs, state.rows.contacts)
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
-  , solver(createSolver(scenario.solver), scenario.stopping, scenario.failure)
+  , solver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure)
 {
   rememberGood();
   updateEnds();
@@ -304,6 +304,7 @@ void Simulator::setSolver(const std::string& name)
 void Simulator::setSolver(std::unique_ptr<Solver> solver)
 {
   impl_->scenario.solver = solver->name();
+  impl_->scenario.solver_options.clear();  // those it has are its own affair
   impl_->solver.setMethod(std::move(solver));
 }
 

@@ -11,8 +11,14 @@ namespace
 {
 void visit(StateArchive& archive, JointDrive& drive)
 {
+  // One number for mode and schedule: states without schedules are those of before there were any, to the bit.
   constexpr std::uint64_t MODES = 3;
-  archive.enumeration("command.mode", drive.command.mode, MODES);
+  std::uint64_t mode = static_cast<std::uint64_t>(drive.command.mode) + (drive.is_scheduled ? MODES : 0);
+  archive.integer("command.mode", mode);
+  if (mode >= 2 * MODES)
+    throw StateError("command.mode is " + std::to_string(mode) + ", expected less than " + std::to_string(2 * MODES));
+  drive.command.mode = static_cast<JointCommand::Mode>(mode % MODES);
+  drive.is_scheduled = mode >= MODES;
   archive.number("command.target", drive.command.target);
   archive.number("command.kp", drive.command.kp);
   archive.number("command.kd", drive.command.kd);

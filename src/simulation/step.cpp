@@ -46,11 +46,11 @@ const StepOutcome& Simulator::step()
 
 void Simulator::Impl::moveToMidpoint()
 {
-  const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
+  context.middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
   for (Body& body : bodies)
   {
     frictional_contact_sim::moveToMidpoint(body, context.dt);
-    applyWrenches(body, middle);
+    applyWrenches(body, context.middle);
   }
 }
 
@@ -165,11 +165,10 @@ void Simulator::Impl::take()
 {
   assembly.setMeanVelocity(result.solution);
   assembly.book(context, result.solution, state.energy);
-  const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
   for (Body& body : bodies)
   {
     moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.tree.nv), context.dt);
-    removeExpiredWrenches(body, middle);
+    removeExpiredWrenches(body, context.middle);
   }
   assembly.accept(context, {result.solution, result.law_errors});
   ++state.clock.steps;
@@ -201,7 +200,6 @@ void Simulator::Impl::hold()
   bookEnergies();
   const double kinetic = state.energy.kinetic;
   const double potential = state.energy.potential;
-  const double middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
   for (size_t b = 0; b < bodies.size(); ++b)
   {
     Body& body = bodies[b];
@@ -209,7 +207,7 @@ void Simulator::Impl::hold()
       body.state.q = good[b].first;
     body.state.v.setZero();
     body.state.base_pose = basePose(body, context.dt);
-    removeExpiredWrenches(body, middle);
+    removeExpiredWrenches(body, context.middle);
     updateEnd(body);
   }
   assembly.accept(context, {result.solution, result.law_errors});

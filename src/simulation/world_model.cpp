@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "frictional_contact_sim/config/nearest_name.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "start_check.h"
@@ -33,11 +34,29 @@ struct Draft
   BodyState& state;
 };
 
+template <typename Named>
+std::vector<std::string> namesOf(const std::vector<Named>& things)
+{
+  std::vector<std::string> names;
+  for (const Named& thing : things)
+    names.push_back(thing.name);
+  return names;
+}
+
+/** "unknown joint 'hipp', did you mean 'hip'?" */
+template <typename Named>
+[[noreturn]] void failUnknown(const std::string& body, const std::string& what, const std::string& name,
+                              const std::vector<Named>& things)
+{
+  const std::string nearest = nearestName(name, namesOf(things));
+  fail(body, what + " '" + name + "'" + (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+}
+
 int findSingleJoint(const BodyModel& model, const std::string& name, const std::string& purpose)
 {
   const int joint = model.tree.findJoint(name);
   if (joint < 0)
-    fail(model.name, purpose + " names an unknown joint '" + name + "'");
+    failUnknown(model.name, purpose + " names an unknown joint", name, model.tree.joints);
   if (velocitySize(model.tree.joints[joint].type) != 1)
     fail(model.name, purpose + ": joint '" + name + "' has not exactly one coordinate");
   return joint;
@@ -135,6 +154,26 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
   body.model.base_motion = {spec.motion->first, spec.motion->second, true};
 }
 
+void setSchedules(const BodySpec& spec, const Draft& body)
+{
+  for (const auto& [name, schedule] : spec.schedules)
+  {
+    if (spec.commands.count(name) == 0 || schedule.empty())
+      fail(spec.name, "the command over time of joint '" + name + "' has no command or no times");
+    const int joint = findSingleJoint(body.model, name, "commands");
+    try
+    {
+      schedule.validate();
+    }
+    catch (const std::invalid_argument& error)
+    {
+      fail(spec.name, "the command over time of joint '" + name + "' " + error.what());
+    }
+    body.model.schedules[joint] = schedule;
+    body.state.drives[joint].is_scheduled = true;
+  }
+}
+
 void setCommands(const BodySpec& spec, const Draft& body)
 {
   for (const auto& [name, command] : spec.commands)
@@ -142,6 +181,7 @@ void setCommands(const BodySpec& spec, const Draft& body)
     const int joint = findSingleJoint(body.model, name, "commands");
     body.state.drives[joint] = makeDrive(body.model, joint, command);
   }
+  setSchedules(spec, body);
   if (!spec.hold_initial_position)
     return;
   for (size_t j = 0; j < body.state.drives.size(); ++j)
@@ -172,7 +212,7 @@ void setWrenches(const BodySpec& spec, const Draft& body)
   {
     wrench.frame = body.model.tree.findFrame(wrench.link);
     if (wrench.frame < 0)
-      fail(body.model.name, "wrenches names an unknown link '" + wrench.link + "'");
+      failUnknown(body.model.name, "wrenches names an unknown link", wrench.link, body.model.tree.frames);
     body.state.wrenches.push_back(wrench);
   }
 }
@@ -212,10 +252,30 @@ int addShapes(const BodySpec& spec, const Draft& body, WorldModel& world)
   }
 }
 
+/** What of the body collides, and with which material. */
+void checkLinks(const BodySpec& spec, const BodyModel& model)
+{
+  const auto check = [&](const std::string& what, const std::string& link)
+  {
+    if (model.tree.findFrame(link) < 0)
+      failUnknown(model.name, what + " names an unknown link", link, model.tree.frames);
+  };
+  for (const auto& [link_1, link_2] : spec.disable_collisions)
+  {
+    check("disable_collisions", link_1);
+    check("disable_collisions", link_2);
+  }
+  for (const auto& entry : spec.link_materials)
+    check("materials", entry.first);
+}
+
 /** Adds the body's shapes, puts it on the ground where no pose is given, and gives it commands and wrenches. */
 void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world)
 {
+  checkLinks(spec, body.model);
   const int handle = addShapes(spec, body, world);  // bodies and handles count alike
+  if (!spec.self_collision)
+    world.collision.disableSelfCollision(handle);
   for (const auto& [link_1, link_2] : spec.disable_collisions)
     world.collision.disablePair(handle, link_1, link_2);
   Body moved(body.model, body.state);
@@ -253,6 +313,16 @@ void atSource(const BodySpec& spec, const Load& load)
   }
 }
 
+/** A material that is given to the link itself says its friction too; else the URDF's goes before the body's. */
+SurfaceSide bodySide(const WorldModel& world, const ShapeInfo& shape)
+{
+  const BodySpec& spec = world.scenario.bodies[shape.body];
+  const auto own = spec.link_materials.find(shape.link_name);
+  if (own != spec.link_materials.end())
+    return {own->second, -1.0};
+  return {spec.material, world.bodies[shape.body].tree.shapes[shape.index].friction};
+}
+
 std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
 {
   std::vector<SurfaceSide> sides;
@@ -262,8 +332,7 @@ std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
     if (shape.body < 0)
       sides.push_back({"ground", world.scenario.ground->friction.value_or(-1.0)});
     else
-      sides.push_back(
-          {world.scenario.bodies[shape.body].material, world.bodies[shape.body].tree.shapes[shape.index].friction});
+      sides.push_back(bodySide(world, shape));
   }
   return sides;
 }

@@ -19,6 +19,26 @@ ContactMap alartCurnierMap(RadiusRule rule)
   return {&evaluateAlartCurnier<3, RadiusRule::AUGMENTED>, &evaluateAlartCurnier<2, RadiusRule::AUGMENTED>};
 }
 
+const OptionTable<AcNewtonOptions>& AcNewtonOptions::table()
+{
+  static const OptionTable<AcNewtonOptions> table =
+      OptionTable<AcNewtonOptions>("ac_newton", {{"radius_rule",
+                                                  &AcNewtonOptions::radius_rule,
+                                                  {"impulse", "augmented"},
+                                                  "radius of the friction disc: mu r_N, or mu max(0, r_N - rho u_N)"}})
+          .include(&AcNewtonOptions::newton, SemismoothNewtonOptions::table());
+  return table;
+}
+
+void AcNewtonOptions::validate() const
+{
+  newton.validate();
+}
+
+AcNewton::AcNewton(const AcNewtonOptions& options) : AcNewton(options.newton, options.radius_rule)
+{
+}
+
 AcNewton::AcNewton(const SemismoothNewtonOptions& options, RadiusRule rule)
   : SemismoothNewton("ac_newton", alartCurnierMap(rule), options)
 {

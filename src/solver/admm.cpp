@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -37,13 +36,25 @@ Curvature curvature(const Impulse& dz, const Velocity& dl, const Eigen::VectorXd
 }
 }  // namespace
 
+const OptionTable<AdmmOptions>& AdmmOptions::table()
+{
+  static const OptionTable<AdmmOptions> table(
+      "admm",
+      {
+          {"penalty", &AdmmOptions::penalty, above(0.0), "-", "first rho"},
+          {"update_interval", &AdmmOptions::update_interval, atLeast(1), "iterations",
+           "between two spectral estimates of rho"},
+          {"correlation", &AdmmOptions::correlation, inside(0.0, 1.0), "-",
+           "smallest correlation of a trusted curvature"},
+          {"convergence", &AdmmOptions::convergence, above(0.0), "-", "constant of the limit on changes of rho"},
+          {"refactor_ratio", &AdmmOptions::refactor_ratio, above(1.0), "-", "rho changes only by at least this factor"},
+      });
+  return table;
+}
+
 void AdmmOptions::validate() const
 {
-  requireOption(penalty > 0.0, "admm.penalty", penalty, "> 0");
-  requireOption(update_interval >= 1, "admm.update_interval", update_interval, ">= 1");
-  requireOption(correlation > 0.0 && correlation < 1.0, "admm.correlation", correlation, "in (0, 1)");
-  requireOption(convergence > 0.0, "admm.convergence", convergence, "> 0");
-  requireOption(refactor_ratio > 1.0, "admm.refactor_ratio", refactor_ratio, "> 1");
+  table().validate(*this);
 }
 
 Admm::Admm(const AdmmOptions& options) : Solver("admm"), options_(options)

@@ -23,15 +23,30 @@ void softThreshold(double* y, int size, double threshold)
 }
 }  // namespace
 
+const OptionTable<BipotentialOptions>& BipotentialOptions::table()
+{
+  static const OptionTable<BipotentialOptions> table(
+      "bipotential",
+      {
+          {"penalty", &BipotentialOptions::penalty, NumberRange{0.0, LARGEST_PENALTY, true}, "-",
+           "sigma at the start, in scaled variables, >= smallest_penalty"},
+          {"smallest_penalty", &BipotentialOptions::smallest_penalty, NumberRange{0.0, LARGEST_PENALTY, true}, "-",
+           "sigma never falls below"},
+          {"balance_interval", &BipotentialOptions::balance_interval, atLeast(1), "iterations",
+           "between two looks at sigma"},
+          {"balance_ratio", &BipotentialOptions::balance_ratio, above(1.0), "-",
+           "sigma changes when one of the two residuals is that much larger"},
+          {"relaxation", &BipotentialOptions::relaxation, NumberRange{1.0, 2.0, false, true}, "-",
+           "over-relaxation of z in the other two steps"},
+          {"max_rows", &BipotentialOptions::max_rows, atLeast(1), "rows", "above them the dense factor is refused"},
+      });
+  return table;
+}
+
 void BipotentialOptions::validate() const
 {
-  requireOption(smallest_penalty > 0.0, "bipotential.smallest_penalty", smallest_penalty, "> 0");
-  requireOption(penalty >= smallest_penalty && penalty <= LARGEST_PENALTY, "bipotential.penalty", penalty,
-                "in [smallest_penalty, 1e6]");
-  requireOption(balance_interval >= 1, "bipotential.balance_interval", balance_interval, ">= 1");
-  requireOption(balance_ratio > 1.0, "bipotential.balance_ratio", balance_ratio, "> 1");
-  requireOption(relaxation >= 1.0 && relaxation < 2.0, "bipotential.relaxation", relaxation, "in [1, 2)");
-  requireOption(max_rows >= 1, "bipotential.max_rows", max_rows, ">= 1");
+  table().validate(*this);
+  requireOption(penalty >= smallest_penalty, "bipotential.penalty", penalty, ">= smallest_penalty");
 }
 
 Bipotential::Bipotential(const BipotentialOptions& options) : Solver("bipotential"), options_(options)

@@ -3,25 +3,36 @@
 #include <cmath>
 #include <limits>
 
-#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
+const OptionTable<CadouxBroydenOptions>& CadouxBroydenOptions::table()
+{
+  static const OptionTable<CadouxBroydenOptions> table(
+      "cadoux_broyden",
+      {
+          {"inner_accuracy", &CadouxBroydenOptions::inner_accuracy, inside(0.0, 1.0), "-",
+           "inner tolerance relative to the outer error"},
+          {"memory", &CadouxBroydenOptions::memory, atLeast(1), "terms", "of rank one that are kept"},
+          {"divergence", &CadouxBroydenOptions::divergence, above(1.0), "-",
+           "growth of |G| over its best value that resets B"},
+          {"stall_window", &CadouxBroydenOptions::stall_window, atLeast(2), "iterations",
+           "without the residual falling by a tenth before giving up"},
+          {"inner", &CadouxBroydenOptions::inner, innerSolverNames(), "method of the inner convex problems"},
+      });
+  return table;
+}
+
 void CadouxBroydenOptions::validate() const
 {
-  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux_broyden.inner_accuracy", inner_accuracy,
-                "in (0, 1)");
-  requireOption(memory >= 1, "cadoux_broyden.memory", memory, ">= 1");
-  requireOption(divergence > 1.0, "cadoux_broyden.divergence", divergence, "> 1");
-  requireOption(stall_window >= 2, "cadoux_broyden.stall_window", stall_window, ">= 2");
+  table().validate(*this);
 }
 
 CadouxBroyden::CadouxBroyden(const CadouxBroydenOptions& options, std::unique_ptr<ConvexSolver> inner)
   : Solver("cadoux_broyden")
   , options_(options)
-  , map_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+  , map_(inner != nullptr ? std::move(inner) : createInnerSolver(options.inner))
 {
   options_.validate();
 }

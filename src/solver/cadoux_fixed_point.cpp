@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -15,18 +13,34 @@ namespace
 constexpr int MAX_HALVINGS = 3;
 }  // namespace
 
+const OptionTable<CadouxOptions>& CadouxOptions::table()
+{
+  static const OptionTable<CadouxOptions> table(
+      "cadoux_fixed_point",
+      {
+          {"inner_accuracy", &CadouxOptions::inner_accuracy, inside(0.0, 1.0), "-",
+           "inner tolerance relative to the outer error"},
+          {"relaxation", &CadouxOptions::relaxation, NumberRange{0.0, 1.0, true}, "-",
+           "s <- s + relaxation (F(s) - s)"},
+          {"initial_slip", &CadouxOptions::initial_slip, {"zero", "guess"}, "first s: 0, or |u_T| of the guess"},
+          {"cycle_window", &CadouxOptions::cycle_window, atLeast(1), "iterations",
+           "without progress that halve the step, up to three times"},
+          {"stall_window", &CadouxOptions::stall_window, atLeast(2), "iterations",
+           "without the residual falling by a tenth before giving up"},
+          {"inner", &CadouxOptions::inner, innerSolverNames(), "method of the inner convex problems"},
+      });
+  return table;
+}
+
 void CadouxOptions::validate() const
 {
-  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux.inner_accuracy", inner_accuracy, "in (0, 1)");
-  requireOption(relaxation > 0.0 && relaxation <= 1.0, "cadoux.relaxation", relaxation, "in (0, 1]");
-  requireOption(cycle_window >= 1, "cadoux.cycle_window", cycle_window, ">= 1");
-  requireOption(stall_window >= 2, "cadoux.stall_window", stall_window, ">= 2");
+  table().validate(*this);
 }
 
 CadouxFixedPoint::CadouxFixedPoint(const CadouxOptions& options, std::unique_ptr<ConvexSolver> inner)
   : Solver("cadoux_fixed_point")
   , options_(options)
-  , map_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+  , map_(inner != nullptr ? std::move(inner) : createInnerSolver(options.inner))
 {
   options_.validate();
 }

@@ -4,9 +4,7 @@
 
 #include "frictional_contact_sim/math/cone.h"
 #include "frictional_contact_sim/problem/law_functions.h"
-#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -31,16 +29,27 @@ SquareMatrix<3> projectionJacobian(const Law& law, const Eigen::VectorXd& x, int
 }
 }  // namespace
 
+const OptionTable<CadouxNewtonOptions>& CadouxNewtonOptions::table()
+{
+  static const OptionTable<CadouxNewtonOptions> table(
+      "cadoux_newton",
+      {
+          {"inner_accuracy", &CadouxNewtonOptions::inner_accuracy, inside(0.0, 1.0), "-",
+           "inner tolerance relative to the outer error"},
+          {"line_search_steps", &CadouxNewtonOptions::line_search_steps, atLeast(0), "halvings", "of the step"},
+          {"sufficient_decrease", &CadouxNewtonOptions::sufficient_decrease, inside(0.0, 0.5), "-", "Armijo constant"},
+          {"proximal", &CadouxNewtonOptions::proximal, inside(0.0, 1.0), "-", "alpha of the linear system"},
+          {"max_rows", &CadouxNewtonOptions::max_rows, atLeast(1), "rows", "above them the method fails at once"},
+          {"stall_window", &CadouxNewtonOptions::stall_window, atLeast(2), "iterations",
+           "without the residual falling by a tenth before giving up"},
+          {"inner", &CadouxNewtonOptions::inner, innerSolverNames(), "method of the inner convex problems"},
+      });
+  return table;
+}
+
 void CadouxNewtonOptions::validate() const
 {
-  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "cadoux_newton.inner_accuracy", inner_accuracy,
-                "in (0, 1)");
-  requireOption(line_search_steps >= 0, "cadoux_newton.line_search_steps", line_search_steps, ">= 0");
-  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "cadoux_newton.sufficient_decrease",
-                sufficient_decrease, "in (0, 0.5)");
-  requireOption(proximal > 0.0 && proximal < 1.0, "cadoux_newton.proximal", proximal, "in (0, 1)");
-  requireOption(max_rows >= 1, "cadoux_newton.max_rows", max_rows, ">= 1");
-  requireOption(stall_window >= 2, "cadoux_newton.stall_window", stall_window, ">= 2");
+  table().validate(*this);
 }
 
 /** P' of every law, and the rows where it is not zero. */
@@ -145,7 +154,7 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
 CadouxNewton::CadouxNewton(const CadouxNewtonOptions& options, std::unique_ptr<ConvexSolver> inner)
   : Solver("cadoux_newton")
   , options_(options)
-  , map_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+  , map_(inner != nullptr ? std::move(inner) : createInnerSolver(options.inner))
 {
   options_.validate();
 }

@@ -37,14 +37,25 @@ double interpolate(double t1, double f1, double g1, double t2, double f2, double
 }
 }  // namespace
 
+const OptionTable<FbBfgsOptions>& FbBfgsOptions::table()
+{
+  static const OptionTable<FbBfgsOptions> table(
+      "fb_bfgs",
+      {
+          {"memory", &FbBfgsOptions::memory, atLeast(1), "pairs", "that are kept"},
+          {"sufficient_decrease", &FbBfgsOptions::sufficient_decrease, inside(0.0, 0.5), "-",
+           "c1 of Wolfe's conditions"},
+          {"curvature", &FbBfgsOptions::curvature, inside(0.0, 1.0), "-",
+           "c2 of Wolfe's conditions, > sufficient_decrease"},
+          {"line_search_steps", &FbBfgsOptions::line_search_steps, atLeast(1), "evaluations", "a line search"},
+      });
+  return table;
+}
+
 void FbBfgsOptions::validate() const
 {
-  requireOption(memory >= 1, "fb_bfgs.memory", memory, ">= 1");
-  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "fb_bfgs.sufficient_decrease",
-                sufficient_decrease, "in (0, 0.5)");
-  requireOption(curvature > sufficient_decrease && curvature < 1.0, "fb_bfgs.curvature", curvature,
-                "in (sufficient_decrease, 1)");
-  requireOption(line_search_steps >= 1, "fb_bfgs.line_search_steps", line_search_steps, ">= 1");
+  table().validate(*this);
+  requireOption(curvature > sufficient_decrease, "fb_bfgs.curvature", curvature, "> sufficient_decrease");
 }
 
 FbBfgs::FbBfgs(const FbBfgsOptions& options) : Solver("fb_bfgs"), options_(options)

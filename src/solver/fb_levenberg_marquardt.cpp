@@ -16,13 +16,25 @@ constexpr double SMALLEST_LAMBDA = 1e-14;
 constexpr double LARGEST_DAMPING = 1e12;
 }  // namespace
 
+const OptionTable<FbLevenbergMarquardtOptions>& FbLevenbergMarquardtOptions::table()
+{
+  static const OptionTable<FbLevenbergMarquardtOptions> table(
+      "fb_levenberg_marquardt",
+      {
+          {"first_damping", &FbLevenbergMarquardtOptions::first_damping, above(0.0), "-", "lambda at the start"},
+          {"smallest_damping", &FbLevenbergMarquardtOptions::smallest_damping, above(0.0), "-",
+           "lambda never falls below, <= first_damping"},
+          {"smallest_gain", &FbLevenbergMarquardtOptions::smallest_gain, inside(0.0, 1.0), "-",
+           "actual over predicted decrease from which a step is accepted"},
+      });
+  return table;
+}
+
 void FbLevenbergMarquardtOptions::validate() const
 {
-  requireOption(first_damping > 0.0, "fb_levenberg_marquardt.first_damping", first_damping, "> 0");
-  requireOption(smallest_damping > 0.0 && smallest_damping <= first_damping, "fb_levenberg_marquardt.smallest_damping",
-                smallest_damping, "in (0, first_damping]");
-  requireOption(smallest_gain > 0.0 && smallest_gain < 1.0, "fb_levenberg_marquardt.smallest_gain", smallest_gain,
-                "in (0, 1)");
+  table().validate(*this);
+  requireOption(smallest_damping <= first_damping, "fb_levenberg_marquardt.smallest_damping", smallest_damping,
+                "<= first_damping");
 }
 
 FbLevenbergMarquardt::FbLevenbergMarquardt(const FbLevenbergMarquardtOptions& options)

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -18,18 +17,34 @@ constexpr double LAMBDA_GROWTH = 100.0;
 constexpr double LARGEST_LAMBDA = 1e8;
 }  // namespace
 
+const OptionTable<FbNewtonSmoothedOptions>& FbNewtonSmoothedOptions::table()
+{
+  static const OptionTable<FbNewtonSmoothedOptions> table(
+      "fb_newton_smoothed",
+      {
+          {"first_smoothing", &FbNewtonSmoothedOptions::first_smoothing, above(0.0), "-",
+           "alpha at the start over the largest free velocity, in scaled variables"},
+          {"smoothing_decrease", &FbNewtonSmoothedOptions::smoothing_decrease, inside(0.0, 1.0), "-",
+           "factor on alpha"},
+          {"inner_share", &FbNewtonSmoothedOptions::inner_share, above(0.0), "-",
+           "inner tolerance over alpha, per row"},
+          {"inner_iterations", &FbNewtonSmoothedOptions::inner_iterations, atLeast(1), "iterations", "an alpha"},
+          {"least_squares", &FbNewtonSmoothedOptions::least_squares,
+           "a damped step where Newton's fails; else the next alpha follows at once"},
+          {"restarts", &FbNewtonSmoothedOptions::restarts, atLeast(0), "starts",
+           "anew when no step decreases the merit"},
+          {"restart_factor", &FbNewtonSmoothedOptions::restart_factor, above(1.0), "-",
+           "on the first alpha of a new start"},
+          {"line_search_steps", &FbNewtonSmoothedOptions::line_search_steps, atLeast(0), "halvings", "of the step"},
+          {"sufficient_decrease", &FbNewtonSmoothedOptions::sufficient_decrease, inside(0.0, 0.5), "-",
+           "Armijo constant"},
+      });
+  return table;
+}
+
 void FbNewtonSmoothedOptions::validate() const
 {
-  requireOption(first_smoothing > 0.0, "fb_newton_smoothed.first_smoothing", first_smoothing, "> 0");
-  requireOption(smoothing_decrease > 0.0 && smoothing_decrease < 1.0, "fb_newton_smoothed.smoothing_decrease",
-                smoothing_decrease, "in (0, 1)");
-  requireOption(inner_share > 0.0, "fb_newton_smoothed.inner_share", inner_share, "> 0");
-  requireOption(inner_iterations >= 1, "fb_newton_smoothed.inner_iterations", inner_iterations, ">= 1");
-  requireOption(restarts >= 0, "fb_newton_smoothed.restarts", restarts, ">= 0");
-  requireOption(restart_factor > 1.0, "fb_newton_smoothed.restart_factor", restart_factor, "> 1");
-  requireOption(line_search_steps >= 0, "fb_newton_smoothed.line_search_steps", line_search_steps, ">= 0");
-  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "fb_newton_smoothed.sufficient_decrease",
-                sufficient_decrease, "in (0, 0.5)");
+  table().validate(*this);
 }
 
 FbNewtonSmoothed::FbNewtonSmoothed(const FbNewtonSmoothedOptions& options)

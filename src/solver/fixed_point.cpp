@@ -14,13 +14,25 @@ constexpr double SMALLEST_STEP = 1e-12;
 constexpr double LARGEST_STEP = 1e12;
 }  // namespace
 
+const OptionTable<FixedPointOptions>& FixedPointOptions::table()
+{
+  static const OptionTable<FixedPointOptions> table(
+      "fixed_point", {
+                         {"first_step", &FixedPointOptions::first_step, above(0.0), "-", "theta at the start"},
+                         {"adapt", &FixedPointOptions::adapt, "theta changes; else it stays at first_step"},
+                         {"largest_ratio", &FixedPointOptions::largest_ratio, inside(0.0, 2.0), "-",
+                          "accepted theta |F(y) - F(z)| / |y - z|"},
+                         {"smallest_ratio", &FixedPointOptions::smallest_ratio, inside(0.0, 2.0), "-",
+                          "below it theta grows, < largest_ratio"},
+                         {"shrink", &FixedPointOptions::shrink, inside(0.0, 1.0), "-", "factor on theta"},
+                     });
+  return table;
+}
+
 void FixedPointOptions::validate() const
 {
-  requireOption(first_step > 0.0 && std::isfinite(first_step), "fixed_point.first_step", first_step, "> 0");
-  requireOption(largest_ratio > 0.0 && largest_ratio < 2.0, "fixed_point.largest_ratio", largest_ratio, "in (0, 2)");
-  requireOption(smallest_ratio > 0.0 && smallest_ratio < largest_ratio, "fixed_point.smallest_ratio", smallest_ratio,
-                "in (0, largest_ratio)");
-  requireOption(shrink > 0.0 && shrink < 1.0, "fixed_point.shrink", shrink, "in (0, 1)");
+  table().validate(*this);
+  requireOption(smallest_ratio < largest_ratio, "fixed_point.smallest_ratio", smallest_ratio, "< largest_ratio");
 }
 
 FixedPoint::FixedPoint(std::string name, const FixedPointMap& map, ScaledContacts::Metric metric,

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "frictional_contact_sim/solver/one_contact.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -33,12 +32,26 @@ double updateContact(const DelassusProblem& problem, int i, double relaxation, E
 }
 }  // namespace
 
+const OptionTable<GaussSeidelOptions>& GaussSeidelOptions::table()
+{
+  static const OptionTable<GaussSeidelOptions> table(
+      "gauss_seidel",
+      {
+          {"check_interval", &GaussSeidelOptions::check_interval, atLeast(1), "sweeps",
+           "between two forced evaluations of the residual"},
+          {"stall_window", &GaussSeidelOptions::stall_window, atLeast(0), "sweeps",
+           "after which the residual must have fallen by stall_factor, 0 = no matter"},
+          {"stall_factor", &GaussSeidelOptions::stall_factor, inside(0.0, 1.0), "-",
+           "required ratio of residuals over a window"},
+          {"conjugate", &GaussSeidelOptions::conjugate, "sweeps are combined as conjugate gradients do"},
+          {"relaxation", &GaussSeidelOptions::relaxation, inside(0.0, 2.0), "-", "r_i <- r_i + relaxation (new - old)"},
+      });
+  return table;
+}
+
 void GaussSeidelOptions::validate() const
 {
-  requireOption(check_interval >= 1, "gauss_seidel.check_interval", check_interval, ">= 1");
-  requireOption(stall_window >= 0, "gauss_seidel.stall_window", stall_window, ">= 0");
-  requireOption(stall_factor > 0.0 && stall_factor < 1.0, "gauss_seidel.stall_factor", stall_factor, "in (0, 1)");
-  requireOption(relaxation > 0.0 && relaxation < 2.0, "gauss_seidel.relaxation", relaxation, "in (0, 2)");
+  table().validate(*this);
 }
 
 GaussSeidel::GaussSeidel(const GaussSeidelOptions& options) : Solver("gauss_seidel"), options_(options)

@@ -3,24 +3,36 @@
 #include <algorithm>
 
 #include "frictional_contact_sim/solver/convex/slip_map.h"
-#include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
+const OptionTable<HaslingerOptions>& HaslingerOptions::table()
+{
+  static const OptionTable<HaslingerOptions> table(
+      "haslinger", {
+                       {"inner_accuracy", &HaslingerOptions::inner_accuracy, inside(0.0, 1.0), "-",
+                        "inner tolerance relative to the outer error"},
+                       {"relaxation", &HaslingerOptions::relaxation, NumberRange{0.0, 1.0, true}, "-",
+                        "s <- s + relaxation (mu r_N - s)"},
+                       {"slowest", &HaslingerOptions::slowest, aboveOrInfinite(0.0), "-",
+                        "share of the residual that an outer iteration may leave"},
+                       {"stall_window", &HaslingerOptions::stall_window, atLeast(2), "iterations",
+                        "without the residual falling by a tenth before giving up"},
+                       {"inner", &HaslingerOptions::inner, innerSolverNames(), "method of the inner convex problems"},
+                   });
+  return table;
+}
+
 void HaslingerOptions::validate() const
 {
-  requireOption(inner_accuracy > 0.0 && inner_accuracy < 1.0, "haslinger.inner_accuracy", inner_accuracy, "in (0, 1)");
-  requireOption(relaxation > 0.0 && relaxation <= 1.0, "haslinger.relaxation", relaxation, "in (0, 1]");
-  requireOption(slowest > 0.0, "haslinger.slowest", slowest, "> 0");
-  requireOption(stall_window >= 2, "haslinger.stall_window", stall_window, ">= 2");
+  table().validate(*this);
 }
 
 Haslinger::Haslinger(const HaslingerOptions& options, std::unique_ptr<ConvexSolver> inner)
   : Solver("haslinger")
   , options_(options)
-  , inner_(inner != nullptr ? std::move(inner) : std::make_unique<SpectralGradient>())
+  , inner_(inner != nullptr ? std::move(inner) : createInnerSolver(options.inner))
 {
   options_.validate();
 }

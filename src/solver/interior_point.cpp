@@ -6,7 +6,6 @@
 
 #include "frictional_contact_sim/solver/convex/slip_map.h"
 #include "frictional_contact_sim/solver/outer_loop.h"
-#include "options_check.h"
 
 namespace frictional_contact_sim
 {
@@ -16,13 +15,27 @@ namespace
 constexpr double SHORTEST_STEP = 1e-10;
 }  // namespace
 
+const OptionTable<InteriorPointOptions>& InteriorPointOptions::table()
+{
+  static const OptionTable<InteriorPointOptions> table =
+      OptionTable<InteriorPointOptions>(
+          "interior_point",
+          {
+              {"slip_centring", &InteriorPointOptions::slip_centring, inside(0.0, 1.0), "-",
+               "lower bound of sigma m relative to rho e^2"},
+              {"warm_shift", &InteriorPointOptions::warm_shift, notNegative(), "-",
+               "distance of a warm start from the boundary relative to its error, 0 = always cold"},
+              {"stall_window", &InteriorPointOptions::stall_window, atLeast(2), "iterations",
+               "without the residual falling by a tenth before a restart"},
+              {"restarts", &InteriorPointOptions::restarts, atLeast(0), "restarts", "before giving up"},
+          })
+          .include(&InteriorPointOptions::step, PrimalDualOptions::table());
+  return table;
+}
+
 void InteriorPointOptions::validate() const
 {
-  requireOption(slip_centring > 0.0 && slip_centring < 1.0, "interior_point.slip_centring", slip_centring, "in (0, 1)");
-  requireOption(warm_shift >= 0.0, "interior_point.warm_shift", warm_shift, ">= 0");
-  requireOption(stall_window >= 2, "interior_point.stall_window", stall_window, ">= 2");
-  requireOption(restarts >= 0, "interior_point.restarts", restarts, ">= 0");
-  step.validate();
+  table().validate(*this);
 }
 
 InteriorPoint::InteriorPoint(const InteriorPointOptions& options)

@@ -129,12 +129,27 @@ std::vector<Eigen::Index> bilateralRows(const DelassusProblem& problem)
 }
 }  // namespace
 
+const OptionTable<LcpLemkeOptions>& LcpLemkeOptions::table()
+{
+  static const OptionTable<LcpLemkeOptions> table =
+      OptionTable<LcpLemkeOptions>(
+          "lcp_lemke",
+          {
+              {"method", &LcpLemkeOptions::method, {"lemke", "principal_pivoting"}, "way of pivoting"},
+              {"facets", &LcpLemkeOptions::facets, between(4, 1000), "directions",
+               "of the polyhedral cone in 3D, an even number"},
+              {"alignments", &LcpLemkeOptions::alignments, atLeast(0), "solves",
+               "with turned directions after the first"},
+              {"max_size", &LcpLemkeOptions::max_size, atLeast(1), "rows", "of the largest LCP tried"},
+          })
+          .include(&LcpLemkeOptions::pivoting, LcpOptions::table());
+  return table;
+}
+
 void LcpLemkeOptions::validate() const
 {
-  requireOption(facets >= 4 && facets % 2 == 0, "lcp_lemke.facets", facets, "an even number >= 4");
-  requireOption(alignments >= 0, "lcp_lemke.alignments", alignments, ">= 0");
-  requireOption(max_size >= 1, "lcp_lemke.max_size", max_size, ">= 1");
-  pivoting.validate();
+  table().validate(*this);
+  requireOption(facets % 2 == 0, "lcp_lemke.facets", facets, "an even number");
 }
 
 ContactLcp makeContactLcp(const DelassusProblem& problem, int facets, const Eigen::VectorXd& angles,

@@ -169,13 +169,24 @@ std::vector<bool> LemkePath::basic() const
 }
 }  // namespace
 
+const OptionTable<LcpOptions>& LcpOptions::table()
+{
+  static const OptionTable<LcpOptions> table(
+      "lcp", {
+                 {"max_pivots", &LcpOptions::max_pivots, atLeast(0), "pivots", "at most, 0 = 20 n + 100"},
+                 {"pivot_tolerance", &LcpOptions::pivot_tolerance, inside(0.0, 1.0), "-",
+                  "entries below this share of the column's largest never pivot"},
+                 {"tie_tolerance", &LcpOptions::tie_tolerance, NumberRange{0.0, 1.0, false, true}, "-",
+                  "ratios this close, relative to the largest, are equal"},
+             });
+  return table;
+}
+
 void LcpOptions::validate() const
 {
-  requireOption(max_pivots >= 0, "lcp.max_pivots", max_pivots, ">= 0");
-  requireOption(pivot_tolerance > 0.0 && pivot_tolerance < 1.0, "lcp.pivot_tolerance", pivot_tolerance, "in (0, 1)");
-  requireOption(tie_tolerance >= 0.0 && tie_tolerance < 1.0, "lcp.tie_tolerance", tie_tolerance, "in [0, 1)");
+  table().validate(*this);
   requireOption(covering.size() == 0 || covering.minCoeff() > 0.0, "lcp.covering", "a vector with an entry <= 0",
-                "all entries > 0");
+                "entries > 0");
 }
 
 void checkLcp(const Eigen::MatrixXd& M, const Eigen::VectorXd& b, const LcpOptions& options)

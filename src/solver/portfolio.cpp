@@ -64,24 +64,46 @@ void relativeVelocity(const DelassusProblem& problem, const Eigen::VectorXd& r, 
 }
 }  // namespace
 
+const OptionTable<PortfolioOptions>& PortfolioOptions::table()
+{
+  static const OptionTable<PortfolioOptions> table(
+      "portfolio", {
+                       {"newton_first_rows", &PortfolioOptions::newton_first_rows, atLeast(0), "rows",
+                        "up to which Newton goes first"},
+                       {"newton_first_steps", &PortfolioOptions::newton_first_steps, atLeast(1), "iterations",
+                        "its budget in that place"},
+                       {"newton_try_rows", &PortfolioOptions::newton_try_rows, atLeast(0), "rows",
+                        "up to which it goes first too, for newton_try_steps at most"},
+                       {"newton_try_steps", &PortfolioOptions::newton_try_steps, atLeast(1), "iterations",
+                        "and only as long as no step fails"},
+                       {"haslinger_steps", &PortfolioOptions::haslinger_steps, atLeast(1), "iterations",
+                        "of Haslinger's fixed point on more rows, as long as it is quick"},
+                       {"newton_last_rows", &PortfolioOptions::newton_last_rows, atLeast(0), "rows",
+                        "above which Newton alone takes too many factorizations, >= newton_first_rows"},
+                       {"swept_first_rows", &PortfolioOptions::swept_first_rows, atLeast(0), "rows",
+                        "from which on Newton with sweeps goes before Newton alone"},
+                       {"swept_last_rows", &PortfolioOptions::swept_last_rows, atLeast(0), "rows",
+                        "above which nothing is factored, >= swept_first_rows"},
+                       {"swept_steps", &PortfolioOptions::swept_steps, atLeast(1), "iterations",
+                        "budget of Newton with sweeps, doubled every round"},
+                       {"first_sweeps", &PortfolioOptions::first_sweeps, atLeast(0), "sweeps",
+                        "of Gauss-Seidel before Newton on larger problems"},
+                       {"newton_steps", &PortfolioOptions::newton_steps, atLeast(1), "iterations",
+                        "Newton's budget after sweeps, doubled every round"},
+                       {"later_sweeps", &PortfolioOptions::later_sweeps, atLeast(1), "sweeps",
+                        "of the later rounds, doubled every round"},
+                       {"max_rounds", &PortfolioOptions::max_rounds, atLeast(0), "rounds", "of sweeps and Newton"},
+                   });
+  return table;
+}
+
 void PortfolioOptions::validate() const
 {
-  requireOption(newton_first_rows >= 0, "portfolio.newton_first_rows", newton_first_rows, ">= 0");
-  requireOption(newton_first_steps >= 1, "portfolio.newton_first_steps", newton_first_steps, ">= 1");
-  requireOption(haslinger_steps >= 1, "portfolio.haslinger_steps", haslinger_steps, ">= 1");
-  requireOption(interior_steps >= 1, "portfolio.interior_steps", interior_steps, ">= 1");
-  requireOption(newton_try_rows >= 0, "portfolio.newton_try_rows", newton_try_rows, ">= 0");
-  requireOption(newton_try_steps >= 1, "portfolio.newton_try_steps", newton_try_steps, ">= 1");
+  table().validate(*this);
   requireOption(newton_last_rows >= newton_first_rows, "portfolio.newton_last_rows", newton_last_rows,
                 ">= newton_first_rows");
-  requireOption(first_sweeps >= 0, "portfolio.first_sweeps", first_sweeps, ">= 0");
-  requireOption(swept_first_rows >= 0, "portfolio.swept_first_rows", swept_first_rows, ">= 0");
   requireOption(swept_last_rows >= swept_first_rows, "portfolio.swept_last_rows", swept_last_rows,
                 ">= swept_first_rows");
-  requireOption(swept_steps >= 1, "portfolio.swept_steps", swept_steps, ">= 1");
-  requireOption(newton_steps >= 1, "portfolio.newton_steps", newton_steps, ">= 1");
-  requireOption(later_sweeps >= 1, "portfolio.later_sweeps", later_sweeps, ">= 1");
-  requireOption(max_rounds >= 0, "portfolio.max_rounds", max_rounds, ">= 0");
 }
 
 Portfolio::Portfolio(const PortfolioOptions& options)

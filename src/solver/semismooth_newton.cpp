@@ -35,24 +35,42 @@ void store(const ContactFunction<D>& f, double* value, double* by_u, double* by_
 }
 }  // namespace
 
+const OptionTable<SemismoothNewtonOptions>& SemismoothNewtonOptions::table()
+{
+  static const OptionTable<SemismoothNewtonOptions> table(
+      "semismooth_newton",
+      {
+          {"proximal_start", &SemismoothNewtonOptions::proximal_start, above(0.0), "-", "first alpha"},
+          {"proximal_min", &SemismoothNewtonOptions::proximal_min, above(0.0), "-", "smallest alpha"},
+          {"proximal_max", &SemismoothNewtonOptions::proximal_max, above(0.0), "-",
+           "largest alpha, failing there ends the run, >= proximal_start, proximal_restart"},
+          {"proximal_restart", &SemismoothNewtonOptions::proximal_restart, above(0.0), "-",
+           "smallest alpha after a failure"},
+          {"proximal_decrease", &SemismoothNewtonOptions::proximal_decrease, inside(0.0, 1.0), "-",
+           "factor on alpha after a success"},
+          {"proximal_increase", &SemismoothNewtonOptions::proximal_increase, above(1.0), "-",
+           "factor on alpha after a failure"},
+          {"restarts", &SemismoothNewtonOptions::restarts,
+           "alpha grows after a failure; else the first one ends the run"},
+          {"inner_iterations", &SemismoothNewtonOptions::inner_iterations, atLeast(1), "iterations",
+           "without the inner error falling below the perturbation"},
+          {"watchdog_min", &SemismoothNewtonOptions::watchdog_min, notNegative(), "-",
+           "smallest alpha at which a step without decrease is taken whole"},
+          {"line_search_steps", &SemismoothNewtonOptions::line_search_steps, atLeast(0), "halvings", "of the step"},
+          {"line_search_memory", &SemismoothNewtonOptions::line_search_memory, between(1, 8), "values",
+           "of the merit that the new one is compared with"},
+          {"sufficient_decrease", &SemismoothNewtonOptions::sufficient_decrease, inside(0.0, 0.5), "-",
+           "Armijo constant"},
+      });
+  return table;
+}
+
 void SemismoothNewtonOptions::validate() const
 {
-  requireOption(proximal_start > 0.0, "semismooth_newton.proximal_start", proximal_start, "> 0");
-  requireOption(proximal_min > 0.0, "semismooth_newton.proximal_min", proximal_min, "> 0");
+  table().validate(*this);
   requireOption(proximal_max >= proximal_start, "semismooth_newton.proximal_max", proximal_max, ">= proximal_start");
-  requireOption(proximal_restart > 0.0, "semismooth_newton.proximal_restart", proximal_restart, "> 0");
   requireOption(proximal_restart <= proximal_max, "semismooth_newton.proximal_restart", proximal_restart,
                 "<= proximal_max");
-  requireOption(proximal_decrease > 0.0 && proximal_decrease < 1.0, "semismooth_newton.proximal_decrease",
-                proximal_decrease, "in (0, 1)");
-  requireOption(proximal_increase > 1.0, "semismooth_newton.proximal_increase", proximal_increase, "> 1");
-  requireOption(inner_iterations >= 1, "semismooth_newton.inner_iterations", inner_iterations, ">= 1");
-  requireOption(watchdog_min >= 0.0, "semismooth_newton.watchdog_min", watchdog_min, ">= 0");
-  requireOption(line_search_steps >= 0, "semismooth_newton.line_search_steps", line_search_steps, ">= 0");
-  requireOption(line_search_memory >= 1 && line_search_memory <= 8, "semismooth_newton.line_search_memory",
-                line_search_memory, "1 to 8");
-  requireOption(sufficient_decrease > 0.0 && sufficient_decrease < 0.5, "semismooth_newton.sufficient_decrease",
-                sufficient_decrease, "in (0, 0.5)");
 }
 
 void SemismoothNewton::setOptions(const SemismoothNewtonOptions& options)

@@ -28,6 +28,8 @@ struct Arguments
 {
   std::vector<std::string> inputs;
   std::vector<std::string> solvers;
+  std::vector<std::string> options;
+  bool list = false;
   std::string output;
   std::string history;
   StoppingOptions stopping;
@@ -156,7 +158,7 @@ public:
       StoppingOptions stopping = arguments.stopping;
       stopping.record_history = !arguments.history.empty();
       stopping.stop = &tools::stop_requested;
-      solvers_.push_back(createSolver(name));
+      solvers_.push_back(createSolver(name, tools::optionsOf(name, arguments.solvers, arguments.options)));
       solvers_.back()->setStopping(stopping);
     }
   }
@@ -252,6 +254,13 @@ private:
 
 int run(Arguments& arguments)
 {
+  if (arguments.list)
+  {
+    std::cout << describeSolvers();
+    return tools::SUCCESS;
+  }
+  if (arguments.inputs.empty())
+    throw std::invalid_argument("FILES are missing, expected FCLib files (see --help)");
   if (arguments.solvers.empty())
     for (const SolverEntry& entry : solverRegistry())
       arguments.solvers.emplace_back(entry.name);
@@ -284,9 +293,12 @@ int main(int argc, char** argv)
       "cannot take a problem gets status REFUSED, a file that cannot be read one row BAD_INPUT; the rest goes on.\n"
       "Exit 0: all converged, 1: a solve did not, 2: bad input, 130: ended by SIGINT or SIGTERM with the rows done.",
       "compare_solvers");
-  app.add_option("FILES", arguments.inputs, "FCLib files, or folders of *.hdf5; never changed")->required();
+  app.add_option("FILES", arguments.inputs, "FCLib files, or folders of *.hdf5; never changed");
   app.add_option("--solvers", arguments.solvers, "names separated by commas (default: all; see fclib_solve)")
       ->delimiter(',');
+  tools::addOptionOption(app, arguments.options,
+                         "SOLVER.NAME=VALUE, or NAME=VALUE for all of --solvers, repeated; see --list-solvers");
+  app.add_flag("--list-solvers", arguments.list, "list the methods with their options and leave");
   tools::addSolveOptions(app, arguments.stopping, arguments.repeat);
   app.add_option("--output", arguments.output, "CSV file (default: standard output)");
   app.add_option("--history", arguments.history,

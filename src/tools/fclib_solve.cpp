@@ -29,6 +29,7 @@ struct Arguments
 {
   std::string file;
   std::string solver = "portfolio";
+  std::vector<std::string> options;
   std::string operator_name = toString(OperatorKind::AUTOMATIC);
   std::string output;
   std::string history;
@@ -37,13 +38,6 @@ struct Arguments
   bool json = false;
   bool list = false;
 };
-
-/** Name, what it needs of W, what it does. */
-void listSolvers()
-{
-  for (const SolverEntry& entry : solverRegistry())
-    std::printf("%-22s %-10s  %s (%s)\n", entry.name, toString(entry.uses), entry.summary, entry.reference);
-}
 
 /** A progress bar with the seconds gone by, drawn by a thread of its own: a method does not tell how far it is. */
 class WaitingLine
@@ -187,7 +181,7 @@ int run(const Arguments& arguments)
 {
   if (arguments.list)
   {
-    listSolvers();
+    std::cout << describeSolvers();
     return tools::SUCCESS;
   }
   if (arguments.file.empty())
@@ -198,7 +192,7 @@ int run(const Arguments& arguments)
     throw std::invalid_argument("--history " + arguments.history + " is FILE itself, expected another file");
   if (!arguments.history.empty() && arguments.history == arguments.output)
     throw std::invalid_argument("--history " + arguments.history + " is --output as well, expected another file");
-  const std::unique_ptr<Solver> solver = createSolver(arguments.solver);
+  const std::unique_ptr<Solver> solver = createSolver(arguments.solver, tools::parseOptions(arguments.options));
   StoppingOptions stopping = arguments.stopping;
   stopping.operator_kind = operatorKind(arguments.operator_name);
   stopping.record_history = !arguments.history.empty();
@@ -231,6 +225,7 @@ int main(int argc, char** argv)
       "fclib_solve");
   app.add_option("FILE", arguments.file, "FCLib file (HDF5); never changed");
   app.add_option("--solver", arguments.solver, "method, one of --list-solvers")->capture_default_str();
+  tools::addOptionOption(app, arguments.options, "NAME=VALUE of the method, repeated; one of --list-solvers");
   app.add_option("--operator", arguments.operator_name,
                  "storage of W: automatic, dense, sparse; matrix_free (global files, methods that use products)")
       ->capture_default_str();
@@ -240,6 +235,6 @@ int main(int argc, char** argv)
                  "write the residual at every iterate the methods judged, last the answer's, to this CSV file:\n"
                  "iteration,seconds,residual (of the last solve of --repeat)");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
-  app.add_flag("--list-solvers", arguments.list, "list the methods and leave");
+  app.add_flag("--list-solvers", arguments.list, "list the methods with their options and leave");
   return tools::runTool(app, argc, argv, [&] { return run(arguments); });
 }

@@ -23,6 +23,7 @@ struct Options
   std::string file;
   std::string output;
   std::vector<std::string> compare;
+  std::vector<std::string> solver_options;
   int nodes = 0;
 };
 
@@ -57,16 +58,22 @@ void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
 }
 
 /** The static answer beside those of the core's solvers on the same contact. */
-void compare(const fcs::RollingRun& run, const std::vector<std::string>& solvers)
+fcs::SolverOptions solverOptions(const std::string& solver, const Options& options)
+{
+  return fcs::tools::optionsOf(solver, options.compare, options.solver_options);
+}
+
+void compare(const fcs::RollingRun& run, const Options& options)
 {
   constexpr double TOLERANCE = 1e-11;
   const Eigen::Index n = run.gap.size();
   const fcs::CoreProblem core =
       fcs::poseForTheCore(run.flexibility, Eigen::VectorXd::Constant(1, run.friction), run.gap.array() - run.approach,
                           Eigen::VectorXd::Constant(n, run.shift));
-  for (const std::string& solver : solvers)
+  for (const std::string& solver : options.compare)
   {
-    const fcs::CoreComparison one = fcs::compareWithCore(core, run.contact, solver, TOLERANCE);
+    const fcs::CoreComparison one =
+        fcs::compareWithCore(core, run.contact, solver, TOLERANCE, solverOptions(solver, options));
     std::cout << "  core's " << one.solver << ": " << one.status << "   tractions differ by " << one.difference
               << "   iterations " << one.iterations << "   CPU " << one.seconds << " s\n";
   }
@@ -90,7 +97,7 @@ int run(const Options& options)
   if (options.nodes > 0)
     study.nodes = options.nodes;
   for (const std::string& solver : options.compare)
-    fcs::createSolver(solver);
+    fcs::createSolver(solver, solverOptions(solver, options));
   if (!options.output.empty())
     checkWritable(options.output);
   std::vector<fcs::RollingRun> runs;
@@ -111,7 +118,7 @@ int run(const Options& options)
   {
     print(study, one);
     if (!options.compare.empty() && one.converged)
-      compare(one, options.compare);
+      compare(one, options);
     converged = converged && one.converged;
   }
   if (!options.output.empty())
@@ -156,5 +163,7 @@ int main(int argc, char** argv)
   app.add_option("--compare", options.compare,
                  "solvers of the core (registry names, comma between) for the same static contact")
       ->delimiter(',');
+  fcs::tools::addOptionOption(app, options.solver_options,
+                              "SOLVER.NAME=VALUE, or NAME=VALUE for all of --compare, repeated");
   return fcs::tools::runTool(app, argc, argv, [&] { return runOrReport(options); });
 }

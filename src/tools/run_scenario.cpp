@@ -13,6 +13,7 @@
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/simulation/csv_recorder.h"
 #include "frictional_contact_sim/simulation/root_motion.h"
+#include "frictional_contact_sim/simulation/scenario_files.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state_file.h"
@@ -31,6 +32,8 @@ struct Options
   double duration = -1.0;
   double time_step = -1.0;
   std::string solver;
+  std::vector<std::string> solver_options;
+  bool list_solvers = false;
   std::string output;
   bool json_output = false;
   int repeat = 1;
@@ -223,15 +226,20 @@ json describe(const fcs::Simulator& simulator, const RunSummary& summary, bool i
 
 fcs::Scenario load(const Options& options)
 {
-  fcs::Scenario scenario = fcs::loadScenarioFile(options.file);
+  fcs::Scenario scenario = fcs::loadScenarioFile(fcs::findScenario(options.file));
   if (std::isnan(options.duration) || std::isnan(options.time_step))
     throw std::invalid_argument("--duration and --time-step take finite numbers");
   if (options.duration >= 0.0)
     scenario.duration = options.duration;
   if (options.time_step > 0.0)
     scenario.time_step = options.time_step;
-  if (!options.solver.empty())
+  if (!options.solver.empty() && options.solver != scenario.solver)
+  {
     scenario.solver = options.solver;
+    scenario.solver_options.clear();  // the file's are of another method
+  }
+  for (const auto& [name, value] : fcs::tools::parseOptions(options.solver_options))
+    scenario.solver_options[name] = value;
   if (!options.on_failure.empty())
     scenario.failure.policy = fcs::parseFailurePolicy(options.on_failure);
   scenario.failure.fallback = scenario.failure.fallback && !options.no_fallback;
@@ -241,6 +249,13 @@ fcs::Scenario load(const Options& options)
 
 int runAll(const Options& options)
 {
+  if (options.list_solvers)
+  {
+    std::cout << fcs::describeSolvers();
+    return fcs::tools::SUCCESS;
+  }
+  if (options.file.empty())
+    throw std::invalid_argument("FILE is missing, expected a scenario (see --help)");
   const fcs::Scenario scenario = load(options);
   if (!options.dump.empty())
     std::filesystem::create_directories(options.dump);
@@ -278,11 +293,15 @@ int main(int argc, char** argv)
       "Runs a scenario as fast as it can and prints one JSON object. Exit 0: every step converged, 1: one did "
       "not, 2: bad input, 130: ended by SIGINT or SIGTERM (files and JSON are of the steps done).",
       "run_scenario");
-  app.add_option("FILE", options.file, "scenario (YAML)")->required();
+  app.add_option("FILE", options.file, "scenario (YAML), or the name of one in config/scenarios");
   app.add_option("--duration", options.duration, "simulated time instead of the file's [s]")
       ->check(CLI::Range(0.0, 1e9));
-  app.add_option("--time-step", options.time_step, "instead of the file's [s]")->check(CLI::Range(1e-9, 1e3));
+  app.add_option("--time-step", options.time_step, "instead of the file's [s]")
+      ->check(CLI::Range(fcs::timeStepRange().lower, fcs::timeStepRange().upper));
   app.add_option("--solver", options.solver, "registry name instead of the file's");
+  fcs::tools::addOptionOption(app, options.solver_options,
+                              "NAME=VALUE of the method, repeated, besides the file's; one of --list-solvers");
+  app.add_flag("--list-solvers", options.list_solvers, "list the methods with their options and leave");
   app.add_option("--on-failure", options.on_failure,
                  "instead of the file's failure policy: stop (default) and pause end the run at the first failed step "
                  "with the state before it, hold and accept go on and count them")

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -13,9 +14,13 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "frictional_contact_sim/config/nearest_name.h"
 #include "frictional_contact_sim/solver/solver.h"
+#include "frictional_contact_sim/solver/solver_options.h"
 
 namespace frictional_contact_sim
 {
@@ -111,6 +116,48 @@ inline void addSolveOptions(CLI::App& app, StoppingOptions& stopping, int& repea
   app.add_option("--repeat", repeat, "cold solves; times are their medians")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+}
+
+/** @brief --option, which may be given again and again. */
+inline void addOptionOption(CLI::App& app, std::vector<std::string>& options, const std::string& text)
+{
+  app.add_option("--option", options, text)->type_name("NAME=VALUE")->allow_extra_args(false);
+}
+
+/** @brief Arguments NAME=VALUE as options of a method. @throws std::invalid_argument in one line */
+inline SolverOptions parseOptions(const std::vector<std::string>& arguments)
+{
+  SolverOptions options;
+  for (const std::string& argument : arguments)
+  {
+    const size_t equal = argument.find('=');
+    if (equal == 0 || equal == std::string::npos)
+      throw std::invalid_argument("--option: found '" + argument + "', expected NAME=VALUE");
+    if (!options.emplace(argument.substr(0, equal), argument.substr(equal + 1)).second)
+      throw std::invalid_argument("--option: found " + argument.substr(0, equal) + " twice, expected once");
+  }
+  return options;
+}
+
+/**
+ * @brief Of arguments SOLVER.NAME=VALUE those of one solver among several; NAME=VALUE goes for all.
+ * @throws std::invalid_argument in one line, also where SOLVER is not among them
+ */
+inline SolverOptions optionsOf(const std::string& solver, const std::vector<std::string>& solvers,
+                               const std::vector<std::string>& arguments)
+{
+  SolverOptions options;
+  for (const auto& [name, value] : parseOptions(arguments))
+  {
+    const size_t dot = name.find('.');
+    const std::string owner = dot == std::string::npos ? solver : name.substr(0, dot);
+    if (std::find(solvers.begin(), solvers.end(), owner) == solvers.end())
+      throw std::invalid_argument("--option: found " + name + ", " + didYouMean(owner, solvers) +
+                                  "expected one of the solvers compared: " + joinNames(solvers));
+    if (owner == solver)
+      options[dot == std::string::npos ? name : name.substr(dot + 1)] = value;
+  }
+  return options;
 }
 
 /** @brief Opens a file to write, before work is spent on what it will hold. @throws std::runtime_error in one line */

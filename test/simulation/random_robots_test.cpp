@@ -25,7 +25,7 @@ using test_support::RunAudit;
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t SUITE_SEEDS = 320;
-constexpr std::uint32_t MESH_SHARE = 8;  ///< so many scenes for one with meshes
+constexpr std::uint32_t MESH_SHARE = 16;  ///< so many scenes for one with meshes
 constexpr int MOST_FAILED_STEPS = 3;  ///< then the run has shown what it can
 
 std::uint32_t seedCount()

@@ -46,6 +46,23 @@ TEST(ScenarioLoaderTest, ReadsEveryKeyOfTheFormat)
   EXPECT_EQ(body.joints.at("hip").velocity, 0.2);
 }
 
+TEST(ScenarioLoaderTest, SolverIsANameOrAMapWithOptions)
+{
+  EXPECT_EQ(loadScenario("solver: admm\n" + withBody(""), FILE_NAME).solver, "admm");
+  const Scenario scenario = loadScenario(
+      "solver: {name: cadoux_fixed_point, options: {inner: admm, relaxation: 0.5}}\n" + withBody(""), FILE_NAME);
+  EXPECT_EQ(scenario.solver, "cadoux_fixed_point");
+  EXPECT_EQ(scenario.solver_options, (SolverOptions{{"inner", "admm"}, {"relaxation", "0.5"}}));
+}
+
+TEST(ScenarioLoaderTest, GroundIsAMapOrAWord)
+{
+  EXPECT_TRUE(loadScenario("ground:\n" + withBody(""), FILE_NAME).ground.has_value());
+  EXPECT_TRUE(loadScenario("ground: true\n" + withBody(""), FILE_NAME).ground.has_value());
+  EXPECT_FALSE(loadScenario("ground: false\n" + withBody(""), FILE_NAME).ground.has_value());
+  EXPECT_FALSE(loadScenario(withBody(""), FILE_NAME).ground.has_value());
+}
+
 struct BadCase
 {
   const char* name;
@@ -82,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"no_bodies", "duration: 1\n", "bodies", "expected"},
         BadCase{"broken_yaml", "bodies: [\n", "scene.yaml", "not valid YAML"},
         BadCase{"not_a_map", "hello\n", "the document", "expected a map"},
-        BadCase{"negative_step", "time_step: -1\n" + withBody(""), "time_step", "> 0"},
+        BadCase{"negative_step", "time_step: -1\n" + withBody(""), "time_step", "in [1e-09, 1000]"},
         BadCase{"nan_gravity", "gravity: [0, 0, .nan]\n" + withBody(""), "gravity[2]", "finite"},
         BadCase{"two_numbers", "gravity: [0, 0]\n" + withBody(""), "gravity", "3 numbers"},
         BadCase{"word_for_number", "duration: long\n" + withBody(""), "duration", "expected a number"},
@@ -91,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"negative_friction", "materials: {default: {friction: -0.1}}\n" + withBody(""),
                 "materials.default.friction", ">= 0"},
         BadCase{"restitution_two", "materials: {default: {restitution: 2}}\n" + withBody(""),
-                "materials.default.restitution", "from 0 to 1"},
+                "materials.default.restitution", "in [0, 1]"},
         BadCase{"missing_urdf", "bodies: [{name: a, urdf: nowhere.urdf}]\n", "bodies[0].urdf", "nowhere.urdf"},
         BadCase{"missing_name", "bodies: [{urdf: a.urdf}]\n", "bodies[0].name", "expected a text"},
         BadCase{"same_name", withBody("  - name: block\n    urdf: " + BLOCK + "\n"), "bodies[1].name", "twice"},
@@ -108,6 +125,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "true or false"},
         BadCase{"negative_time_limit", "failure: {time_limit: -1}\n" + withBody(""), "failure.time_limit", ">= 0"},
         BadCase{"failure_is_no_word", "failure: stop\n" + withBody(""), "failure", "map"},
+        BadCase{"unknown_option", "solver: {name: admm, options: {penlty: 2}}\n" + withBody(""),
+                "solver.options.penlty", "did you mean 'penalty'?"},
+        BadCase{"option_out_of_range", "solver:\n  name: admm\n  options:\n    penalty: -2\n" + withBody(""),
+                "scene.yaml:4: key 'solver.options.penalty'", "found '-2', expected a number > 0"},
+        BadCase{"options_against_each_other",
+                "solver: {name: fb_bfgs, options: {curvature: 0.1, sufficient_decrease: 0.2}}\n" + withBody(""),
+                "solver.options", "> sufficient_decrease"},
+        BadCase{"near_key", "gravty: [0, 0, 0]\n" + withBody(""), "gravty", "did you mean 'gravity'?"},
+        BadCase{"near_policy", "failure: {policy: hodl}\n" + withBody(""), "failure.policy", "did you mean 'hold'?"},
+        BadCase{"twice", "duration: 1\nduration: 2\n" + withBody(""), "scene.yaml:2: key 'duration'", "found twice"},
+        BadCase{"long_step", "time_step: 1001\n" + withBody(""), "time_step", "in [1e-09, 1000]"},
+        BadCase{"self_collision", withBody("    self_collision: 1\n"), "bodies[0].self_collision", "true or false"},
         BadCase{"quasi_static", "quasi_static: true\n" + withBody(""), "quasi_static", "not built"}),
     [](const testing::TestParamInfo<BadCase>& info) { return info.param.name; });
 

@@ -124,7 +124,7 @@ TEST_F(FclibSolveTest, EverySolverOfTheListRunsAndItsExitCodeTellsWhetherItConve
 {
   const CommandResult list = solve("--list-solvers");
   EXPECT_EQ(list.code, 0);
-  EXPECT_EQ(lines(list.output), static_cast<long>(solverRegistry().size()));
+  EXPECT_EQ(list.output, describeSolvers());
   const std::string path = globalFile();
   for (const SolverEntry& entry : solverRegistry())
   {
@@ -135,6 +135,19 @@ TEST_F(FclibSolveTest, EverySolverOfTheListRunsAndItsExitCodeTellsWhetherItConve
     EXPECT_EQ(answer["kind"], "global");
     EXPECT_EQ(result.code, answer["status"] == "CONVERGED" ? 0 : 1) << result.output;
   }
+}
+
+TEST_F(FclibSolveTest, OptionsReachTheMethod)
+{
+  const auto iterations = [&](const std::string& options)
+  {
+    const CommandResult result = solve(globalFile() + " --json --solver cadoux_fixed_point " + options);
+    EXPECT_EQ(result.code, 0) << result.errors;
+    return nlohmann::json::parse(result.output)["iterations"].get<int>();
+  };
+  const int usual = iterations("");
+  EXPECT_EQ(iterations("--option relaxation=1 --option initial_slip=guess"), usual);
+  EXPECT_GT(iterations("--option relaxation=0.1 --option inner=admm"), usual);
 }
 
 TEST_F(FclibSolveTest, ATextLineWithoutJson)
@@ -220,6 +233,11 @@ TEST_F(FclibSolveTest, ArgumentsOutOfTheirRangeAreRefusedWithIt)
   expectRefused(solve(path + " --max-iterations -1"), "max_iterations is -1");
   expectRefused(solve(path + " --time-limit -1"), "time_limit is -1");
   expectRefused(solve(path + " --solver best"), "unknown solver 'best', expected one of: portfolio");
+  expectRefused(solve(path + " --solver admm --option penlty=2"),
+                "admm has no option 'penlty', did you mean 'penalty'?");
+  expectRefused(solve(path + " --solver admm --option penalty=-2"), "found '-2', expected a number > 0");
+  expectRefused(solve(path + " --solver admm --option penalty"), "--option: found 'penalty', expected NAME=VALUE");
+  expectRefused(solve(path + " --solver admm --option penalty=1 --option penalty=2"), "penalty twice");
   expectRefused(solve(path + " --nonsense"), "nonsense");
   expectRefused(solve(""), "FILE is missing");
   EXPECT_EQ(solve("--help").code, 0);

@@ -140,4 +140,81 @@ TEST_F(RunScenarioStateTest, WrongStateFilesAreBadInputInOneLine)
   refused("grasp", folder_ + "/cut", "cut: has ");
   EXPECT_EQ(run("grasp", "--duration 0.1 --save-state " + folder_ + "/no/such/state").code, 2);
 }
+
+/// In an empty folder, with the package found as ROS finds it.
+class RunScenarioNameTest : public testing::Test
+{
+protected:
+  RunScenarioNameTest()
+    : back_(fs::current_path())
+    , folder_((fs::temp_directory_path() / ("run_scenario_name_" + std::to_string(getpid()))).string())
+  {
+    fs::create_directories(folder_);
+    fs::current_path(folder_);
+    setenv("ROS_PACKAGE_PATH", PROJECT_DIR, 1);
+  }
+  ~RunScenarioNameTest() override
+  {
+    fs::current_path(back_);
+    fs::remove_all(folder_);
+  }
+  static void expectRefused(const std::string& arguments, const std::string& reason)
+  {
+    const CommandResult result = runTool("run_scenario", arguments);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(lines(result.errors), 1) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  }
+  fs::path back_;
+  std::string folder_;
+};
+
+TEST_F(RunScenarioNameTest, NamesThatTheLaunchFileTakesAreTaken)
+{
+  const std::string file = std::string(PROJECT_DIR) + "/config/scenarios/grasp.yaml";
+  const auto hash = [](const std::string& scenario)
+  {
+    const CommandResult result = runTool("run_scenario", scenario + " --duration 0.01 --json");
+    EXPECT_EQ(result.code, 0) << result.errors;
+    return nlohmann::json::parse(result.output).at("state_hash").dump();
+  };
+  const std::string expected = hash(file);
+  EXPECT_EQ(hash("grasp"), expected);
+  fs::create_directories("grasp");  // a folder of the name is no scenario
+  EXPECT_EQ(hash("grasp"), expected);
+  expectRefused("./grasp", "./grasp: is a folder, expected a scenario file (YAML)");
+  fs::create_directories("elsewhere");
+  expectRefused("elsewhere", "elsewhere: is a folder and no scenario of the package");
+  expectRefused("grsap", "grsap: is no file and no scenario of the package, did you mean 'grasp'?");
+  expectRefused("nowhere.yaml", "nowhere.yaml: is no file");
+  expectRefused("", "FILE is missing");
+}
+
+TEST_F(RunScenarioNameTest, OptionsOfTheMethodAreArgumentsToo)
+{
+  expectRefused("grasp --option relaxaton=1", "portfolio has no option 'relaxaton'");
+  expectRefused("grasp --solver gauss_seidel --option relaxaton=1", "did you mean 'relaxation'?");
+  EXPECT_EQ(runTool("run_scenario", "grasp --duration 0.01 --solver gauss_seidel --option relaxation=0.9").code, 0);
+  EXPECT_EQ(runTool("run_scenario", "--list-solvers").output, describeSolvers());
+  EXPECT_EQ(runTool("compare_solvers", "--list-solvers").output, describeSolvers());
+}
+
+TEST_F(RunScenarioNameTest, WhereSeveralMethodsAreComparedAnOptionMayNameItsOwn)
+{
+  const auto refused = [](const std::string& tool, const std::string& arguments, const std::string& reason)
+  {
+    const CommandResult result = runTool(tool, arguments);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(lines(result.errors), 1) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  };
+  const std::string cattaneo = std::string(PROJECT_DIR) + "/config/rolling/cattaneo.yaml --compare admm,gauss_seidel ";
+  refused("rolling_contact", cattaneo + "--option admm.penlty=1", "did you mean 'penalty'?");
+  refused("rolling_contact", cattaneo + "--option relaxation=1", "admm has no option 'relaxation'");
+  const std::string both = "none.hdf5 --solvers admm,gauss_seidel ";
+  refused("compare_solvers", both + "--option amdm.penalty=1", "did you mean 'admm'?");
+  refused("compare_solvers", both + "--option gauss_seidel.relaxation=2", "expected a number in (0, 2)");
+  const CommandResult taken = runTool("compare_solvers", both + "--option gauss_seidel.relaxation=1.5");
+  EXPECT_NE(taken.output.find("BAD_INPUT"), std::string::npos) << taken.output;  // the file, not the option
+}
 }  // namespace

@@ -81,6 +81,9 @@ public:
   /** @brief Two links of a body never collide. @throws std::invalid_argument naming an unknown link */
   void disablePair(int body, const std::string& link_1, const std::string& link_2);
 
+  /** @brief No two links of a body collide. */
+  void disableSelfCollision(int body);
+
   /**
    * @brief Disables the pairs of links *within one body* that overlap now (initial pose; gap < -1e-9 m, so links that
    * only touch still collide), and those of a body on a fixed base with static shapes: what is mounted in the ground

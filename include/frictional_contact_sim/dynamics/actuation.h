@@ -58,8 +58,11 @@ struct ServoImpulse
   double stiffness = 0.0;  ///< K [kg] or [kg m^2], zero for a constant effort
 };
 
-/** @brief The impulse of a command over one step of length dt at joint position q and velocity v (gains set). */
-ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt);
+/**
+ * @brief The impulse of a command over one step of length dt at joint position q and velocity v (gains set).
+ * @param rate v_d of a POSITION command whose target moves [rad/s] or [m/s]
+ */
+ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt, double rate = 0.0);
 
 /**
  * @brief Fills unset gains for a joint that moves `inertia`: a critically damped servo of DEFAULT_SERVO_FREQUENCY,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/dynamics/command_schedule.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
@@ -42,6 +43,7 @@ struct BodyModel
   bool free_link;  ///< one floating link: stepped about its centre of mass, see free_link.h
   bool isotropic;  ///< the root link's principal moments are equal
   BaseMotion base_motion;
+  std::vector<CommandSchedule> schedules;  ///< joints: commands over time, empty where there is none
 
   /** @brief What meshes add to extents, sizes and reach: CollisionWorld::meshReach. Until then they count as nothing.
    */
@@ -55,7 +57,8 @@ struct BodyModel
 /** @brief The drive of one joint: its command, and what it did in the last step. */
 struct JointDrive
 {
-  JointCommand command;  ///< gains set
+  JointCommand command;  ///< gains set; follows a schedule: with the target of the last step
+  bool is_scheduled = false;  ///< the target is that of BodyModel::schedules, until another command is given
   double effort_limit = 0.0;  ///< the smaller of the URDF's and the command's [N m] or [N], may be infinite
   double effort = 0.0;  ///< mean over the last step, after saturation [N m] or [N]
 };
@@ -139,6 +142,12 @@ void removeExpiredWrenches(Body& body, double now);
  *  the body at the distance of the joint's reach (it is the rest that moves when the limb stands on the ground).
  *  Needs mass matrix and poses in `data`. [kg m^2] or [kg] */
 double servoInertia(const BodyModel& model, const MultibodyData& data, int joint);
+
+/** @brief The drive's command in a step whose middle is at scenario time `middle` [s]: from its schedule if it follows
+ * one, an effort within the limit. */
+JointCommand commandAt(const Body& body, int joint, double middle);
+/** @brief Slope of the drive's target then [1/s of its unit]. */
+double commandRate(const Body& body, int joint, double middle);
 
 /** @brief Checks a command and fills its gains. @throws std::invalid_argument naming the joint and the number */
 JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& command);

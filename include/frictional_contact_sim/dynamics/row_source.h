@@ -27,6 +27,7 @@ namespace frictional_contact_sim
 struct StepContext
 {
   double dt = 0.001;  ///< [s] > 0
+  double middle = 0.0;  ///< of the step, on the scenario's clock [s]
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};
   NormalLaw normal_law;
   double tolerance = 1e-8;  ///< of the solver, on E

@@ -12,6 +12,7 @@
 
 #include "frictional_contact_sim/problem/delassus_problem.h"
 #include "frictional_contact_sim/rolling/frictional_lcp.h"
+#include "frictional_contact_sim/solver/solver_options.h"
 
 namespace frictional_contact_sim
 {
@@ -36,9 +37,9 @@ struct CoreComparison
 
 /**
  * @brief Solves with a solver of the registry and compares with the answer of the nonsymmetric LCP.
- * @throws std::invalid_argument on an unknown name
+ * @throws std::invalid_argument on an unknown name or option
  */
 CoreComparison compareWithCore(const CoreProblem& core, const FrictionalContact& contact, const std::string& solver,
-                               double tolerance);
+                               double tolerance, const SolverOptions& options = {});
 
 }  // namespace frictional_contact_sim

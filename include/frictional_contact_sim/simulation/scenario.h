@@ -15,11 +15,13 @@
 
 #include "frictional_contact_sim/collision/broad_phase_kind.h"
 #include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/dynamics/command_schedule.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/simulation/failure.h"
 #include "frictional_contact_sim/solver/solver.h"
+#include "frictional_contact_sim/solver/solver_options.h"
 
 namespace frictional_contact_sim
 {
@@ -40,10 +42,13 @@ struct BodySpec
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< world axes [rad/s]
   std::map<std::string, JointInit> joints;
   std::map<std::string, JointCommand> commands;
+  std::map<std::string, CommandSchedule> schedules;  ///< of joints in `commands`: their targets over time
   bool hold_initial_position = false;  ///< every actuated joint without a command gets a position servo at its start
   std::vector<ExternalWrench> wrenches;
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion;  ///< fixed base: linear, angular velocity
   std::string material = "default";
+  std::map<std::string, std::string> link_materials;  ///< by link, where it is not `material`
+  bool self_collision = true;  ///< false: no two of its links collide
   std::vector<std::pair<std::string, std::string>> disable_collisions;  ///< pairs of links
   std::optional<double> min_joint_inertia;  ///< see loadUrdf [kg m^2] or [kg] > 0
   std::string source;  ///< where it was read, "FILE:LINE: key 'bodies[0]'", for messages; may be empty
@@ -62,6 +67,7 @@ struct Scenario
   double duration = 2.0;  ///< [s]
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   std::string solver = "portfolio";
+  SolverOptions solver_options;  ///< of that method, besides its defaults
   StoppingOptions stopping;
   MaterialTable materials;
   std::optional<GroundSpec> ground;

@@ -14,9 +14,21 @@ namespace frictional_contact_sim
 /** @brief The Alart-Curnier function with the given rule for the radius of the friction disc. */
 ContactMap alartCurnierMap(RadiusRule rule);
 
+struct AcNewtonOptions
+{
+  SemismoothNewtonOptions newton;
+  RadiusRule radius_rule = RadiusRule::AUGMENTED;  ///< radius of the friction disc
+
+  /** @brief What each is, as data. */
+  static const OptionTable<AcNewtonOptions>& table();
+  /** @throws std::invalid_argument naming the field and its value. */
+  void validate() const;
+};
+
 class AcNewton : public SemismoothNewton
 {
 public:
+  explicit AcNewton(const AcNewtonOptions& options);
   explicit AcNewton(const SemismoothNewtonOptions& options = {}, RadiusRule rule = RadiusRule::AUGMENTED);
 };
 

@@ -21,6 +21,7 @@
 
 #include "frictional_contact_sim/solver/convex/convex_problem.h"
 #include "frictional_contact_sim/solver/convex/shifted_factor.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -33,6 +34,8 @@ struct AdmmOptions
   double convergence = 1e6;  ///< constant of the limit on changes of rho [-], > 0
   double refactor_ratio = 1.3;  ///< rho changes only by at least this factor, > 1
 
+  /** @brief What each is, as data. */
+  static const OptionTable<AdmmOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

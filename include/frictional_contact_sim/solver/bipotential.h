@@ -28,6 +28,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/scaled_contacts.h"
 #include "frictional_contact_sim/solver/solver.h"
 
@@ -42,6 +43,8 @@ struct BipotentialOptions
   double relaxation = 1.6;  ///< over-relaxation of z in the other two steps [-], in [1, 2)
   int max_rows = 4000;  ///< rows above which the dense factor is refused, >= 1
 
+  /** @brief What each is, as data. */
+  static const OptionTable<BipotentialOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -13,7 +13,9 @@
  */
 #include <vector>
 
+#include "frictional_contact_sim/solver/convex/inner_solver.h"
 #include "frictional_contact_sim/solver/convex/slip_map.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -24,7 +26,10 @@ struct CadouxBroydenOptions
   int memory = 50;  ///< rank-one terms kept, >= 1
   double divergence = 10.0;  ///< growth of |G| over its best value that resets B [-], > 1
   int stall_window = 100;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
+  InnerSolver inner = InnerSolver::SPECTRAL_GRADIENT;  ///< of the convex problems, where the constructor is given none
 
+  /** @brief What each is, as data. */
+  static const OptionTable<CadouxBroydenOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -15,7 +15,9 @@
  * unqualified, s is raised once (perturbation argument of 3.3.2) instead of being accepted. A cycle of F is broken by
  * smaller steps.
  */
+#include "frictional_contact_sim/solver/convex/inner_solver.h"
 #include "frictional_contact_sim/solver/convex/slip_map.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -33,7 +35,10 @@ struct CadouxOptions
   InitialSlip initial_slip = InitialSlip::GUESS;
   int cycle_window = 20;  ///< outer iterations without progress that halve the step (up to three times), >= 1
   int stall_window = 100;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
+  InnerSolver inner = InnerSolver::SPECTRAL_GRADIENT;  ///< of the convex problems, where the constructor is given none
 
+  /** @brief What each is, as data. */
+  static const OptionTable<CadouxOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -19,8 +19,10 @@
  */
 #include <vector>
 
+#include "frictional_contact_sim/solver/convex/inner_solver.h"
 #include "frictional_contact_sim/solver/convex/slip_map.h"
 #include "frictional_contact_sim/solver/dense_lu.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -33,7 +35,10 @@ struct CadouxNewtonOptions
   double proximal = 1e-2;  ///< alpha [-], in (0, 1)
   int max_rows = 4000;  ///< above it the method fails at once: the dense factor costs rows^3, >= 1
   int stall_window = 60;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
+  InnerSolver inner = InnerSolver::SPECTRAL_GRADIENT;  ///< of the convex problems, where the constructor is given none
 
+  /** @brief What each is, as data. */
+  static const OptionTable<CadouxNewtonOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

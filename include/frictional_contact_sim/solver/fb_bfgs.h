@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include "frictional_contact_sim/solver/fb_system.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -25,6 +26,8 @@ struct FbBfgsOptions
   double curvature = 0.9;  ///< c2 [-], in (c1, 1)
   int line_search_steps = 30;  ///< evaluations a line search, >= 1
 
+  /** @brief What each is, as data. */
+  static const OptionTable<FbBfgsOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 
 #include "frictional_contact_sim/solver/fb_system.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -25,6 +26,8 @@ struct FbLevenbergMarquardtOptions
   double smallest_damping = 1e-6;  ///< [-], in (0, first_damping]
   double smallest_gain = 1e-4;  ///< actual over predicted decrease from which a step is accepted [-], in (0, 1)
 
+  /** @brief What each is, as data. */
+  static const OptionTable<FbLevenbergMarquardtOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

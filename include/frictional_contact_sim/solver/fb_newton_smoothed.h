@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 
 #include "frictional_contact_sim/solver/fb_system.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -33,6 +34,8 @@ struct FbNewtonSmoothedOptions
   int line_search_steps = 12;  ///< halvings of t, >= 0
   double sufficient_decrease = 1e-4;  ///< Armijo constant [-], in (0, 0.5)
 
+  /** @brief What each is, as data. */
+  static const OptionTable<FbNewtonSmoothedOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -15,6 +15,7 @@
  */
 #include <Eigen/Core>
 
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/scaled_contacts.h"
 #include "frictional_contact_sim/solver/solver.h"
 
@@ -28,6 +29,8 @@ struct FixedPointOptions
   double smallest_ratio = 0.3;  ///< below it theta grows [-], in (0, largest_ratio)
   double shrink = 2.0 / 3.0;  ///< factor on theta [-], in (0, 1)
 
+  /** @brief What each is, as data. */
+  static const OptionTable<FixedPointOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -17,6 +17,7 @@
  */
 #include <Eigen/Core>
 
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -29,6 +30,8 @@ struct GaussSeidelOptions
   bool conjugate = false;  ///< combine sweeps as conjugate gradients do
   double relaxation = 1.0;  ///< r_i <- r_i + relaxation (new - old) [-], in (0, 2)
 
+  /** @brief What each is, as data. */
+  static const OptionTable<GaussSeidelOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

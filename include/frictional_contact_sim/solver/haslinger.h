@@ -14,6 +14,8 @@
 #include <limits>
 
 #include "frictional_contact_sim/solver/convex/convex_solver.h"
+#include "frictional_contact_sim/solver/convex/inner_solver.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -25,7 +27,10 @@ struct HaslingerOptions
   /// an outer iteration that leaves more than this share of the residual ends the run [-], > 0; by default none does
   double slowest = std::numeric_limits<double>::infinity();
   int stall_window = 100;  ///< outer iterations without the residual falling by a tenth before giving up, >= 2
+  InnerSolver inner = InnerSolver::SPECTRAL_GRADIENT;  ///< of the convex problems, where the constructor is given none
 
+  /** @brief What each is, as data. */
+  static const OptionTable<HaslingerOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -19,6 +19,7 @@
 
 #include "frictional_contact_sim/solver/convex/convex_problem.h"
 #include "frictional_contact_sim/solver/convex/primal_dual_iteration.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -33,6 +34,8 @@ struct InteriorPointOptions
   int restarts = 3;  ///< >= 0
   PrimalDualOptions step;
 
+  /** @brief What each is, as data. */
+  static const OptionTable<InteriorPointOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

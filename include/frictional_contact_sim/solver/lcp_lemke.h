@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/solver/lemke.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -42,6 +43,8 @@ struct LcpLemkeOptions
   int max_size = 2500;  ///< largest LCP tried; above it the method fails at once, >= 1
   LcpOptions pivoting;
 
+  /** @brief What each is, as data. */
+  static const OptionTable<LcpLemkeOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

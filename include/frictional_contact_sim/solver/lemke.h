@@ -20,6 +20,8 @@
 #include <Eigen/Core>
 #include <functional>
 
+#include "frictional_contact_sim/solver/option_table.h"
+
 namespace frictional_contact_sim
 {
 enum class LcpStatus
@@ -39,6 +41,8 @@ struct LcpOptions
   Eigen::VectorXd covering;  ///< d > 0, empty = ones
   std::function<bool()> interrupted;  ///< asked every few pivots when set
 
+  /** @brief What each is, as data. */
+  static const OptionTable<LcpOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

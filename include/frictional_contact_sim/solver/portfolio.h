@@ -26,6 +26,7 @@
 #include <memory>
 #include <vector>
 
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -54,6 +55,8 @@ struct PortfolioOptions
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
   int max_rounds = 4;  ///< rounds of step 2, >= 0
 
+  /** @brief What each is, as data. */
+  static const OptionTable<PortfolioOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

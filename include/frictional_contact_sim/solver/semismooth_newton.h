@@ -27,6 +27,7 @@
 
 #include "frictional_contact_sim/math/contact_functions.h"
 #include "frictional_contact_sim/solver/dense_lu.h"
+#include "frictional_contact_sim/solver/option_table.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -55,6 +56,8 @@ struct SemismoothNewtonOptions
   int line_search_memory = 4;  ///< merit values the new one is compared with, in [1, 8]
   double sufficient_decrease = 1e-4;  ///< Armijo constant [-], in (0, 0.5)
 
+  /** @brief What each is, as data. */
+  static const OptionTable<SemismoothNewtonOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "../options_check.h"
-
 namespace frictional_contact_sim
 {
 namespace
@@ -16,10 +14,21 @@ constexpr double INFINITE_SHIFT = 1e20;
 constexpr int FACTOR_ATTEMPTS = 5;
 }  // namespace
 
+const OptionTable<PrimalDualOptions>& PrimalDualOptions::table()
+{
+  static const OptionTable<PrimalDualOptions> table(
+      "interior_point", {
+                            {"step_fraction", &PrimalDualOptions::step_fraction, inside(0.0, 1.0), "-",
+                             "share of the way to the boundary taken"},
+                            {"regularisation", &PrimalDualOptions::regularisation, notNegative(), "-",
+                             "added to the diagonal, relative to 1/rho_i"},
+                        });
+  return table;
+}
+
 void PrimalDualOptions::validate() const
 {
-  requireOption(step_fraction > 0.0 && step_fraction < 1.0, "interior_point.step_fraction", step_fraction, "in (0, 1)");
-  requireOption(regularisation >= 0.0, "interior_point.regularisation", regularisation, ">= 0");
+  table().validate(*this);
 }
 
 PrimalDualIteration::PrimalDualIteration(const PrimalDualOptions& options) : options_(options)

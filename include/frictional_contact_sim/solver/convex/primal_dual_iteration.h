@@ -26,6 +26,7 @@
 #include "frictional_contact_sim/solver/convex/convex_problem.h"
 #include "frictional_contact_sim/solver/convex/lorentz_cone.h"
 #include "frictional_contact_sim/solver/convex/shifted_factor.h"
+#include "frictional_contact_sim/solver/option_table.h"
 
 namespace frictional_contact_sim
 {
@@ -34,6 +35,8 @@ struct PrimalDualOptions
   double step_fraction = 0.99;  ///< share of the way to the boundary taken [-], in (0, 1)
   double regularisation = 1e-14;  ///< added to the diagonal, relative to 1/rho_i [-], >= 0
 
+  /** @brief What each is, as data. */
+  static const OptionTable<PrimalDualOptions>& table();
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
 };

@@ -1,0 +1,205 @@
+// What a scenario says of one body, as a table of keys.
+#include <filesystem>
+
+#include "frictional_contact_sim/model/model_error.h"
+#include "frictional_contact_sim/simulation/scenario_keys.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+using Mode = JointCommand::Mode;
+
+/** One number a step, or a list over times. */
+struct CommandKey
+{
+  const char* constant;
+  const char* over_time;
+  Mode mode;
+};
+constexpr CommandKey COMMAND_KEYS[] = {{"effort", "efforts", Mode::EFFORT},
+                                       {"position", "positions", Mode::POSITION},
+                                       {"velocity", "velocities", Mode::VELOCITY}};
+
+/** {xyz, rpy} or [x, y, z, roll, pitch, yaw]; URDF's convention: about fixed axes. */
+Eigen::Isometry3d readPose(const ConfigNode& node)
+{
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();
+  if (node.isMap())
+    node.readMap({key("xyz", xyz), key("rpy", rpy)});
+  else if (node.isList())
+  {
+    const Eigen::Matrix<double, 6, 1> six = node.vector<6>();
+    xyz = six.head<3>();
+    rpy = six.tail<3>();
+  }
+  else
+    node.failExpecting("{xyz: [x, y, z], rpy: [roll, pitch, yaw]} or [x, y, z, roll, pitch, yaw]");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = xyz;
+  pose.linear() =
+      (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  return pose;
+}
+
+/** times: [...] beside the targets: as many, increasing. */
+void checkTimes(const ConfigNode& node, const char* targets, const CommandSchedule& schedule)
+{
+  if (schedule.times.empty())
+    node.at("times").failExpecting("at least one time [s]");
+  if (schedule.times.size() != schedule.targets.size())
+    node.at(targets).failExpecting("as many entries as times, " + std::to_string(schedule.times.size()));
+  const std::vector<ConfigNode> times = node.at("times").items("times");
+  for (size_t k = 1; k < times.size(); ++k)
+    if (!(schedule.times[k] > schedule.times[k - 1]))
+      times[k].failExpecting("more than the time before, " + numberText(schedule.times[k - 1]));
+}
+
+void readCommand(const ConfigNode& node, const std::string& joint, BodySpec& body)
+{
+  JointCommand command;
+  CommandSchedule schedule;
+  std::string targets;
+  int given = 0;
+  ConfigKeys keys = {key("kp", command.kp, notNegative()), key("kd", command.kd, notNegative()),
+                     key("max_effort", command.max_effort, notNegative()),
+                     key("times", [&](const ConfigNode& times) { schedule.times = times.numbers(); })};
+  for (const CommandKey& kind : COMMAND_KEYS)
+  {
+    const auto choose = [&command, &given, mode = kind.mode]
+    {
+      command.mode = mode;
+      ++given;
+    };
+    keys.push_back(key(kind.constant,
+                       [&command, choose](const ConfigNode& value)
+                       {
+                         choose();
+                         command.target = value.number();
+                       }));
+    keys.push_back(key(kind.over_time,
+                       [&schedule, &targets, choose, name = kind.over_time](const ConfigNode& list)
+                       {
+                         choose();
+                         targets = name;
+                         schedule.targets = list.numbers();
+                       }));
+  }
+  node.readMap(keys);
+  if (given != 1)
+    node.fail("expected exactly one of effort, position, velocity, efforts, positions, velocities");
+  if (!targets.empty() || node.has("times"))
+  {
+    if (targets.empty())
+      node.at("times").failExpecting("none without efforts, positions or velocities");
+    checkTimes(node, targets.c_str(), schedule);
+    command.target = schedule.targets.front();
+    body.schedules[joint] = schedule;
+  }
+  body.commands[joint] = command;
+}
+
+ExternalWrench readWrench(const ConfigNode& node)
+{
+  ExternalWrench wrench;
+  node.readMap({required(key("link", [&](const ConfigNode& link) { wrench.link = link.text(); })),
+                key("force", wrench.force), key("torque", wrench.torque), key("point", wrench.point),
+                key("frame", wrench.world_frame, Choices<bool>{{"world", true}, {"link", false}}),
+                key("from", wrench.from), key("until", wrench.until)});
+  if (!(wrench.until > wrench.from))
+    node.fail("expected until later than from");
+  return wrench;
+}
+
+void readMotion(const ConfigNode& node, BodySpec& body)
+{
+  body.motion.emplace(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  node.readMap({key("linear", body.motion->first), key("angular", body.motion->second)});
+}
+
+void readJoints(const ConfigNode& node, BodySpec& body)
+{
+  for (const auto& [name, joint] : node.entries())
+  {
+    JointInit& init = body.joints[name];
+    joint.readMap({key("position", init.position), key("velocity", init.velocity)});
+  }
+}
+}  // namespace
+
+ConfigKey poseKey(const std::string& name, BodySpec& body)
+{
+  return key(
+      name, [&body](const ConfigNode& node) { body.pose = readPose(node); });
+}
+
+ConfigKey linkMaterialsKey(const std::string& name, BodySpec& body)
+{
+  return key(
+      name,
+      [&body](const ConfigNode& node)
+      {
+        for (const auto& [link, material] : node.entries())
+          body.link_materials[link] = material.text();
+      });
+}
+
+ConfigKeys bodyKeys(BodySpec& body)
+{
+  return {
+      key("base", body.base,
+          Choices<BaseType>{{"auto", BaseType::AUTO}, {"floating", BaseType::FLOATING}, {"fixed", BaseType::FIXED}}),
+      poseKey("pose", body),
+      key(
+          "velocity",
+          [&body](const ConfigNode& node) {
+            node.readMap({key("linear", body.linear_velocity), key("angular", body.angular_velocity)});
+          }),
+      key(
+          "joints", [&body](const ConfigNode& node) { readJoints(node, body); }),
+      key(
+          "commands",
+          [&body](const ConfigNode& node)
+          {
+            for (const auto& [name, command] : node.entries())
+              readCommand(command, name, body);
+          }),
+      key("hold_initial_position", body.hold_initial_position),
+      key(
+          "wrenches",
+          [&body](const ConfigNode& node)
+          {
+            for (const ConfigNode& wrench : node.items("wrenches"))
+              body.wrenches.push_back(readWrench(wrench));
+          }),
+      key(
+          "motion", [&body](const ConfigNode& node) { readMotion(node, body); }),
+      key(
+          "material", [&body](const ConfigNode& node) { body.material = node.text(); }),
+      key("self_collision", body.self_collision),
+      key("min_joint_inertia", [&body](const ConfigNode& node) { body.min_joint_inertia = node.number(positive()); }),
+      key(
+          "disable_collisions",
+          [&body](const ConfigNode& node)
+          {
+            for (const ConfigNode& pair : node.items("pairs of links"))
+              body.disable_collisions.push_back(pair.pairOfTexts());
+          })};
+}
+
+std::string resolveFile(const ConfigNode& node)
+{
+  try
+  {
+    return resolvePath(node.text(), node.folder());
+  }
+  catch (const ModelError& error)
+  {
+    node.fail(error.what());
+  }
+}
+
+}  // namespace frictional_contact_sim
