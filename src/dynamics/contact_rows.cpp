@@ -292,9 +292,8 @@ Eigen::Vector3d ContactRows::velocityOf(const ContactRow& row, const ContactPoin
   const ShapeInfo& shape_b = world_.shape(point.shape_b);
   collectColumns(shape_a, point.position, 1.0, columns_a_);
   collectColumns(shape_b, point.position, -1.0, columns_b_);
-  const Eigen::Vector3d velocity =
-      relativeVelocity(solution.v, baseVelocity(bodies_, shape_a, point.position) -
-                                       baseVelocity(bodies_, shape_b, point.position));
+  const Eigen::Vector3d velocity = relativeVelocity(
+      solution.v, baseVelocity(bodies_, shape_a, point.position) - baseVelocity(bodies_, shape_b, point.position));
   return {solution.u[row.row], row.tangent_1.dot(velocity), row.tangent_2.dot(velocity)};
 }
 

@@ -180,7 +180,8 @@ ConfigKeys bodyKeys(BodySpec& body)
       key(
           "material", [&body](const ConfigNode& node) { body.material = node.text(); }),
       key("self_collision", body.self_collision),
-      key("min_joint_inertia", [&body](const ConfigNode& node) { body.min_joint_inertia = node.number(positive()); }),
+      key(
+          "min_joint_inertia", [&body](const ConfigNode& node) { body.min_joint_inertia = node.number(positive()); }),
       key(
           "disable_collisions",
           [&body](const ConfigNode& node)

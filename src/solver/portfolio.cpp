@@ -285,8 +285,10 @@ bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext&
   return done;
 }
 
-/** The interior point, its answer not taken where it is a self-stress above all: it ends in the middle of all answers,
- * and where impulses may grow without bound between wedged bodies it has some that are as large as it could make them. */
+/**
+ * The interior point, its answer not taken where it is a self-stress above all: it ends in the middle of all answers,
+ * and where impulses may grow without bound between wedged bodies it has some that are as large as it could make them.
+ */
 bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   const double value = best_value_;

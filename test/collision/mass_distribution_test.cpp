@@ -1,5 +1,6 @@
 // Uniformly filled shapes against textbook moments, and hulls against the shapes they approximate.
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <random>

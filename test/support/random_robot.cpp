@@ -81,7 +81,8 @@ private:
   {
     const auto kind = static_cast<MeshKind>(dice_.integer(0, static_cast<int>(MeshKind::KINDS) - 1));
     const std::string name = "l" + std::to_string(index);
-    meshes_.push_back({mesh_prefix_ + name + ".stl", name, makeRandomMesh(kind, scale * dice_.logUniform(0.3, 1.0), dice_)});
+    meshes_.push_back(
+        {mesh_prefix_ + name + ".stl", name, makeRandomMesh(kind, scale * dice_.logUniform(0.3, 1.0), dice_)});
     return "<mesh filename='" + meshes_.back().file + "'/>";
   }
 
