@@ -8,11 +8,12 @@ namespace frictional_contact_sim
 const std::vector<ParameterHelp>& parameterHelp()
 {
   static const std::vector<ParameterHelp> HELP = {
-      {"scenario", "", "scenario file; robot_description is not used then"},
+      {"scenario", "", "scenario file or a name in config/scenarios; robot_description is not used then"},
       {"robot_description", "", "URDF document; else robot_description of this namespace or one above"},
       {"time_step", "0.001", "1e-9 to 1000 [s]; of a scenario: the file's unless set"},
       {"gravity", "[0, 0, -9.81]", "[m/s^2]; of a scenario: the file's unless set"},
       {"solver", "portfolio", "name of the registry: fclib_solve --list-solvers"},
+      {"solver_options", "{}", "{name: value} of the method: fclib_solve --list-solvers"},
       {"tolerance", "1e-8", "largest residual E of a step [-]"},
       {"max_iterations", "1000", "iterations a step"},
       {"ground", "true", "plane z = 0; false, or {height [m], friction [-]}"},
@@ -24,7 +25,18 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"default_friction", "0.8", "coefficient [-] of what ~materials does not say"},
       {"default_restitution", "0", "coefficient 0 to 1 [-] of what ~materials does not say"},
       {"materials", "{}", "default, pairs and single materials, as in a scenario file"},
+      {"link_materials", "{}", "{link: material}"},
       {"disable_collisions", "[]", "[[link, link], ...]"},
+      {"self_collision", "true", "false: no two links of the robot collide"},
+      {"min_joint_inertia", "",
+       "given to joints that move none [kg m^2], [kg] where they slide; not set: 1e-6 of the body"},
+      {"pose", "", "as base_pose, the key of a scenario's body"},
+      {"velocity", "0", "{linear [m/s], angular [rad/s]} of the root link at the start"},
+      {"joints", "{}", "{joint: {position, velocity}} at the start"},
+      {"commands", "{}", "{joint: {position, effort or velocity ..., or times and positions}}, as in a scenario file"},
+      {"wrenches", "[]", "[{link, force, torque, point, frame, from, until}], as in a scenario file"},
+      {"motion", "", "{linear, angular} of a fixed base, prescribed"},
+      {"material", "default", "of the whole robot"},
       {"real_time_factor", "1", "simulated over wall-clock time [-]; 0 = free run, as fast as possible"},
       {"publish_rate", "0", "of the topics of every step [1/s simulated]; 0 = every step"},
       {"clock_rate", "0", "of /clock [1/s simulated]; 0 = every step"},
@@ -40,6 +52,9 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"hold_limit", "5", "how long each of them may [s wall clock]; then its loss is counted and the run goes on"},
       {"num_steps", "0", "end after so many steps; 0 = never"},
       {"on_failure", "stop", "stop, pause, hold or accept; of a scenario: the file's unless set"},
+      {"failure", "", "{policy, fallback, time_limit}, as in a scenario file"},
+      {"contact_law", "gap", "or velocity: the thesis's plain law"},
+      {"broad_phase", "auto", "or fcl, list: the same contacts"},
       {"fallback", "true", "other methods are tried before a step is given up"},
       {"step_time_limit", "0", "of a whole step [s wall clock]; 0 = none"},
       {"dump_dir", "", "folder for FCLib files of failed steps"},
@@ -57,7 +72,8 @@ std::string nodeHelp()
       << "usage: simulator_node [_PARAMETER:=VALUE ...] [TOPIC:=NAME ...]\n"
          "\n"
          "Simulates the robot of robot_description, or a scenario file, with exact Coulomb friction. Topics, services\n"
-         "and messages: README.md. SIGINT and SIGTERM end it in order, a long step too; a second one ends it at once.\n"
+         "and messages: docs/interfaces.md. SIGINT and SIGTERM end it in order, a long step too; a second one ends it "
+         "at once.\n"
          "\n"
          "  -h, --help     print this and end\n"
          "  --version      print the version and end\n"

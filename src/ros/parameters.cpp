@@ -121,7 +121,25 @@ ConfigKey holdKey(bool& hold)
 {
   return key("hold_initial_position", hold);
 }
+
+/** @brief All that are not the robot's. */
+ConfigKeys otherKeys(NodeParameters& parameters)
+{
+  const auto known = [](const ConfigNode&) {};
+  return numericKeys(parameters.scenario) + shortKeys(parameters.scenario) + fileKeys(parameters) +
+         nodeKeys(parameters) + ConfigKeys{key("scenario", known), key("robot_description", known)};
+}
 }  // namespace
+
+std::vector<std::string> parameterNames()
+{
+  NodeParameters parameters;
+  BodySpec robot;
+  std::vector<std::string> names;
+  for (const ConfigKey& one : robotKeys(robot, parameters.scenario) + otherKeys(parameters))
+    names.push_back(one.name);
+  return names;
+}
 
 NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description)
 {
@@ -149,9 +167,7 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   {
     throw ParameterError("robot_description: not set, and no ~scenario either: expected a URDF document or a file");
   }
-  const auto known = [](const ConfigNode&) {};
-  root.readMap(keys + numericKeys(scenario) + shortKeys(scenario) + fileKeys(parameters) + nodeKeys(parameters) +
-               ConfigKeys{key("scenario", known), key("robot_description", known)});
+  root.readMap(keys + otherKeys(parameters));
   checkSolver(root.at("solver_options"), scenario);
   if (file.empty())
   {

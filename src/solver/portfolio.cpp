@@ -34,6 +34,8 @@ constexpr double HASLINGER_SLOWEST = 0.2;
 constexpr int HASLINGER_INNER_STEPS = 100;
 /// Impulses of the interior point are a self-stress where they are so many times those of every law alone.
 constexpr double LARGEST_IMPULSES = 20.0;
+/// It takes its turn where the budget is so many times its own: the others are to have theirs.
+constexpr int INTERIOR_RESERVE = 4;
 /// What a first turn reached is a better start for the others when it is below this share of the residual before it.
 constexpr double WORTH_KEEPING = 1e-3;
 
@@ -288,16 +290,21 @@ bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext&
 /**
  * The interior point, its answer not taken where it is a self-stress above all: it ends in the middle of all answers,
  * and where impulses may grow without bound between wedged bodies it has some that are as large as it could make them.
+ * Then, and where it has no answer, the others start as if it had not been.
  */
 bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
+  if (problem.W.rows() < options_.interior_rows ||
+      context.max_iterations - used_ < INTERIOR_RESERVE * options_.interior_steps)
+    return false;
   const double value = best_value_;
   first_r_ = best_r_;
-  if (!run(*interior_point_, problem, context, options_.interior_steps, result))
-    return false;
-  solveApart(problem, apart_r_);
-  if (best_r_.norm() <= LARGEST_IMPULSES * apart_r_.norm())
-    return true;
+  if (run(*interior_point_, problem, context, options_.interior_steps, result))
+  {
+    solveApart(problem, apart_r_);
+    if (best_r_.norm() <= LARGEST_IMPULSES * apart_r_.norm())
+      return true;
+  }
   best_value_ = value;
   best_r_ = result.solution.r = first_r_;
   return false;

@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "frictional_contact_sim/ros/parameters.h"
 
@@ -31,38 +31,15 @@ std::string content(const std::string& file)
 
 TEST(NodeHelpTest, EveryParameterOfItIsReadAndNoOtherOneIs)
 {
-  // What the node reads: it calls any other parameter unknown.
-  for (const std::string& name : helped())
-  {
-    XmlRpc::XmlRpcValue tree;
-    tree[name] = XmlRpc::XmlRpcValue(7);
-    std::string said;
-    try
-    {
-      for (const std::string& warning : readParameters(tree, "<robot name=\"r\"/>").warnings)
-        said += warning;
-    }
-    catch (const std::exception& error)
-    {
-      said = error.what();
-    }
-    EXPECT_THAT(said, testing::Not(testing::HasSubstr("unknown parameter"))) << name;
-  }
-  const std::string source = content("src/ros/parameters.cpp");
-  const std::regex read("reader\\.(?:read|raw|child|isStruct)\\(\"([a-z_]+)\"");
-  std::set<std::string> names;
-  for (std::sregex_iterator match(source.begin(), source.end(), read); match != std::sregex_iterator(); ++match)
-    names.insert((*match)[1]);
-  names.erase("friction");  // of a material, whose reader has the same name
-  names.erase("restitution");
-  EXPECT_EQ(names, helped());
+  const std::vector<std::string> names = parameterNames();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()), helped());
 }
 
-TEST(NodeHelpTest, TheReadmeHasEveryOneOfThem)
+TEST(NodeHelpTest, TheInterfacesPageHasEveryOneOfThem)
 {
-  const std::string readme = content("README.md");
+  const std::string page = content("docs/interfaces.md");
   for (const std::string& name : helped())
-    EXPECT_THAT(readme, testing::HasSubstr("~" + name)) << name;
+    EXPECT_NE(page.find("~" + name), std::string::npos) << name;
 }
 
 TEST(NodeHelpTest, EachHasALineThatFitsAndSaysWhatItIs)

@@ -59,4 +59,7 @@ struct NodeParameters
  */
 NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description);
 
+/** @brief All private parameters that readParameters reads. */
+std::vector<std::string> parameterNames();
+
 }  // namespace frictional_contact_sim
