@@ -37,6 +37,7 @@ DeliveryMonitor::~DeliveryMonitor()
 void DeliveryMonitor::addLosslessNode(const std::string& node)
 {
   lossless_nodes_.insert(node);
+  given_up_.erase(node);  // it has been started anew
 }
 
 /**
@@ -126,7 +127,12 @@ DeliveryMonitor::Round DeliveryMonitor::lookAtAll(std::set<std::string>& silent)
 {
   Round round;
   const auto sent_by_node = nodes_.sentMessages();
-  for (const auto& [node, all] : sent_by_node.value_or(std::map<std::string, MessageCounts>()))
+  if (!sent_by_node)  // not known is not arrived
+  {
+    round.missing = round.lossless_missing = true;
+    return round;
+  }
+  for (const auto& [node, all] : *sent_by_node)
   {
     MessageCounts sent;
     for (const auto& [topic, count] : all)

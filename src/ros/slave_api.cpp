@@ -28,10 +28,13 @@ bool call(XmlRpcClient& client, const char* method, const XmlRpcValue& request, 
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(CALL_TIMEOUT);
   bool done = false;
-  while (!ros::isShuttingDown() && !done && ros::WallTime::now() < end)
+  bool is_open = true;
+  while (!ros::isShuttingDown() && !done && is_open && ros::WallTime::now() < end)
   {
+    const ros::WallTime start = ros::WallTime::now();
     dispatch.work(CALL_SLICE);
     done = client.executeCheckDone(response);
+    is_open = (ros::WallTime::now() - start).toSec() > 0.5 * CALL_SLICE;  // without a connection it returns at once
   }
   dispatch.removeSource(&client);
   return done && !client.isFault() && response.valid();
@@ -86,12 +89,16 @@ SubscriptionCounts readSubscriptions(const XmlRpcValue& answer)
 }
 
 /** @brief [[connection, node, direction, transport, topic, ...], ...]: which node is at the other end. */
-void SlaveApi::readConnections()
+bool SlaveApi::readConnections()
 {
+  const std::optional<XmlRpcValue> answer = ask(ros::this_node::getName(), "getBusInfo");
+  if (!answer)
+    return false;
   connections_.clear();
-  const XmlRpcValue info = unwrap(ask(ros::this_node::getName(), "getBusInfo").value_or(XmlRpcValue()));
+  const XmlRpcValue info = unwrap(*answer);
   for (int i = 0; i < length(info); ++i)
     connections_[count(element(info[i], 0))] = text(element(info[i], 1));
+  return true;
 }
 
 std::optional<std::map<std::string, MessageCounts>> SlaveApi::sentMessages()
@@ -109,9 +116,11 @@ std::optional<std::map<std::string, MessageCounts>> SlaveApi::sentMessages()
     for (int k = 0; k < length(connections); ++k)
     {
       const std::int64_t connection = count(element(connections[k], 0));
-      if (connections_.count(connection) == 0)
-        readConnections();
-      const std::string& node = connections_[connection];
+      if (connections_.count(connection) == 0 && !readConnections())
+        return std::nullopt;
+      // One that has been closed between the two calls is not there.
+      const auto found = connections_.find(connection);
+      const std::string node = found == connections_.end() ? "" : found->second;
       if (!node.empty() && node != ros::this_node::getName())
         sent[node][topic] += count(element(connections[k], 3));
     }

@@ -74,6 +74,9 @@ const OptionTable<PortfolioOptions>& PortfolioOptions::table()
                         "up to which Newton goes first"},
                        {"newton_first_steps", &PortfolioOptions::newton_first_steps, atLeast(1), "iterations",
                         "its budget in that place"},
+                       {"interior_rows", &PortfolioOptions::interior_rows, atLeast(0), "rows",
+                        "from which on the interior point is next where that has failed"},
+                       {"interior_steps", &PortfolioOptions::interior_steps, atLeast(1), "iterations", "its budget"},
                        {"newton_try_rows", &PortfolioOptions::newton_try_rows, atLeast(0), "rows",
                         "up to which it goes first too, for newton_try_steps at most"},
                        {"newton_try_steps", &PortfolioOptions::newton_try_steps, atLeast(1), "iterations",
@@ -290,7 +293,7 @@ bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext&
 /**
  * The interior point, its answer not taken where it is a self-stress above all: it ends in the middle of all answers,
  * and where impulses may grow without bound between wedged bodies it has some that are as large as it could make them.
- * Then, and where it has no answer, the others start as if it had not been.
+ * Then, and where it has no answer, the others start as if it had not been; it is the last resort.
  */
 bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
@@ -298,21 +301,25 @@ bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveCont
       context.max_iterations - used_ < INTERIOR_RESERVE * options_.interior_steps)
     return false;
   const double value = best_value_;
+  const std::string solver = result.solver;
   first_r_ = best_r_;
   if (run(*interior_point_, problem, context, options_.interior_steps, result))
   {
     solveApart(problem, apart_r_);
     if (best_r_.norm() <= LARGEST_IMPULSES * apart_r_.norm())
       return true;
+    stressed_r_ = best_r_;
   }
   best_value_ = value;
   best_r_ = result.solution.r = first_r_;
+  result.solver = solver;
   return false;
 }
 
 void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   used_ = 0;
+  stressed_r_.resize(0);
   best_r_ = result.solution.r;
   if (!(result.residual >= 0.0))
   {
@@ -352,6 +359,12 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
       done = done || run(*method, problem, context, options_.newton_steps << round, result);
     if (swept && newton)
       done = done || run(*swept_newton_, problem, context, options_.swept_steps << round, result);
+  }
+  if (!done && stressed_r_.size() > 0)
+  {
+    best_r_ = stressed_r_;
+    result.solver = interior_point_->name();
+    done = true;
   }
   result.solution.r = best_r_;
   if (done)

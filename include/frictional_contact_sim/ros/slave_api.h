@@ -41,7 +41,7 @@ public:
   std::optional<std::map<std::string, MessageCounts>> sentMessages();
 
 private:
-  void readConnections();
+  bool readConnections();
   std::string uri(const std::string& node) const;
   XmlRpc::XmlRpcClient* client(const std::string& node);
 

@@ -100,6 +100,7 @@ private:
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
   Eigen::VectorXd velocity_, best_r_, first_r_, apart_r_;
+  Eigen::VectorXd stressed_r_;  ///< of the interior point, not taken; empty: none
   double best_value_ = 0.0;
   int used_ = 0;
 };
