@@ -187,7 +187,7 @@ std::vector<SolverOptions> companions(const std::string& solver)
             {{"line_search_steps", "0"}, {"inner_iterations", "2"}}};
   if (solver == "portfolio")
     return {{},
-            {{"newton_first_steps", "1"}},
+            {{"newton_first_steps", "1"}, {"interior_steps", "10"}},
             {{"newton_first_steps", "1"}, {"interior_rows", "0"}},
             {{"newton_first_rows", "0"}},
             {{"newton_first_rows", "0"}, {"newton_try_steps", "1"}, {"haslinger_steps", "1"}, {"first_sweeps", "1"}},
