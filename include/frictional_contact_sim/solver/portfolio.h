@@ -41,7 +41,7 @@ struct PortfolioOptions
 {
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 60;  ///< its budget in that place, >= 1
-  int interior_rows = 60;  ///< from so many rows on the interior point is next where that has failed, >= 0
+  int interior_rows = 40;  ///< from so many rows on the interior point is next where that has failed, >= 0
   int interior_steps = 40;  ///< its budget, >= 1
   int newton_try_rows = 290;  ///< up to this many rows it goes first too, but for newton_try_steps at most
   int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
