@@ -91,7 +91,7 @@ def run(repo, block, scratch):
     interrupt = block.mode == 'until interrupted'
     with tempfile.TemporaryFile(mode='w+') as output:
         process = subprocess.Popen(['/bin/bash', '-c', script], cwd=repo.root, env=environment, stdin=subprocess.DEVNULL,
-                                   stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+                                   stdout=output, stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=take_interrupts)
         try:
             code = process.wait(LIFE if interrupt else TIMEOUT[block.mode])
             early = interrupt
@@ -104,6 +104,11 @@ def run(repo, block, scratch):
     if early:
         return f'ended by itself with exit code {code}: {tail}'
     return None if code == 0 else f'exit code {code}: {tail}'
+
+
+def take_interrupts():
+    """What a shell has put into the background ignores SIGINT, and so would all below it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def end_group(process):

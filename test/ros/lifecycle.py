@@ -17,7 +17,7 @@ import node_runner
 BAD_INPUT = 2
 LINK = '<link name="{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
 TWO_ROOTS = '<robot name="r">' + LINK.format("a") + LINK.format("b") + "</robot>"
-NO_INERTIA = '<robot name="r"><link name="a"><inertial><mass value="0"/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+NEGATIVE_MASS = '<robot name="r">' + LINK.format("a").replace('mass value="1"', 'mass value="-1"') + "</robot>"
 UNKNOWN_MESH = '<robot name="r">' + LINK.format("a").replace(
     "</link>", '<collision><geometry><mesh filename="file:///nowhere/no.stl"/></geometry></collision></link>') + "</robot>"
 
@@ -28,7 +28,7 @@ BAD = {
     "missing scenario": ({"scenario": "/nowhere/scenario.yaml"}, BOX, ["/nowhere/scenario.yaml"]),
     "broken XML": ({}, "<robot name='r'><link name='a'>", ["robot_description"]),
     "two roots": ({}, TWO_ROOTS, ["root"]),
-    "zero inertia": ({}, NO_INERTIA, ["a"]),
+    "negative mass": ({}, NEGATIVE_MASS, ["'a'", "-1"]),
     "unknown mesh": ({}, UNKNOWN_MESH, ["/nowhere/no.stl"]),
     "unknown solver": ({"solver": "oracle"}, BOX, ["~solver", "oracle", "portfolio"]),
     "wrong type": ({"time_step": "fast"}, BOX, ["~time_step", "'fast'", "number"]),
