@@ -117,11 +117,8 @@ public:
 
   void addWhereNoneMoves()
   {
-    for (int k = singularCoordinate(); k >= 0; k = singularCoordinate())
+    while (Part* const part = nextToGive())  // the factorization at the start position has the last word
     {
-      Part* const part = partToGive(k);
-      if (part == nullptr)
-        return;  // the factorization at the start position has the last word
       part->is_given = true;
       const double least = part->slides ? least_sliding_ : least_turning_;
       const double unfelt = part->load > 0.0 ? std::min(least, UNFELT_SHARE * part->load) : least;
@@ -203,18 +200,19 @@ private:
       least_turning_ = BODY_SHARE * polar;
   }
 
-  /** @return coordinate whose pivot vanishes, -1 = M is positive definite */
-  int singularCoordinate()
+  /** @return what the first coordinate whose pivot vanishes, and that has something left to give, is given */
+  Part* nextToGive()
   {
     factorizeMassMatrix(model_, Eigen::VectorXd(), data_);
-    for (int k = model_.nv - 1; k >= 0; --k)  // the order of the factorization: what comes later may not be computed
+    for (int k = model_.nv - 1; k >= 0; --k)
     {
       const double root = data_.mass_factor(k, k);
-      // where the factorization stopped the pivot itself stands in its place
-      if (!(root > 0.0) || root * root <= std::max(LEAST_PIVOT_RATIO * data_.mass_matrix(k, k), round_off_[k]))
-        return k;
+      const bool stopped = !(root > 0.0);  // the pivot itself stands in its place, and nothing after it was computed
+      if (stopped || root * root <= std::max(LEAST_PIVOT_RATIO * data_.mass_matrix(k, k), round_off_[k]))
+        if (Part* const part = partToGive(k); part != nullptr || stopped)
+          return part;
     }
-    return -1;
+    return nullptr;
   }
 
   /** Of the sum that makes a diagonal entry of M. */

@@ -18,17 +18,22 @@ constexpr double MASTER_PERIOD = 0.1;  // between two questions [s]
 std::atomic<bool> end_requested{false};
 std::atomic<bool> in_order{false};
 
-/** @brief Only what a signal handler may call. A signal raised in its handler arrives when the handler returns. */
+/** @brief Only what a signal handler may call. @return whether it is the first one */
+bool requestEnd()
+{
+  const bool first = !end_requested.exchange(true);
+  if (first && !in_order)
+    ros::requestShutdown();
+  return first;
+}
+
+/** @brief A signal raised in its handler arrives when the handler returns. */
 void onSignal(int number)
 {
-  if (end_requested.exchange(true))
+  if (!requestEnd())
   {
     std::signal(number, SIG_DFL);
     std::raise(number);
-  }
-  else if (!in_order)
-  {
-    ros::requestShutdown();
   }
 }
 
@@ -43,19 +48,19 @@ void endOnSignals()
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // rosnode kill, or a new node of this name: as a signal, where roscpp would close the connections at once. Bound
+  // before roscpp binds its own (which then has no effect) and before its server thread looks anything up.
+  ros::XMLRPCManager::instance()->bind("shutdown",
+                                       [](XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result)
+                                       {
+                                         requestEnd();
+                                         result = ros::xmlrpc::responseInt(1, "", 0);
+                                       });
 }
 
 void endInOrder()
 {
   in_order = true;
-  // rosnode kill, or a new node of this name: as a signal, where roscpp would close the connections at once.
-  ros::XMLRPCManager::instance()->unbind("shutdown");
-  ros::XMLRPCManager::instance()->bind("shutdown",
-                                       [](XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result)
-                                       {
-                                         end_requested = true;
-                                         result = ros::xmlrpc::responseInt(1, "", 0);
-                                       });
 }
 
 const std::atomic<bool>& endRequested()

@@ -17,8 +17,8 @@ Pacer::Pacer(double factor) : factor_(factor)
 
 void Pacer::restart(double simulated, double wall)
 {
-  start_simulated_ = window_simulated_ = simulated;
-  start_wall_ = window_wall_ = wall;
+  start_simulated_ = window_simulated_ = last_simulated_ = simulated;
+  start_wall_ = window_wall_ = last_wall_ = wall;
 }
 
 double Pacer::wait(double simulated, double wall)
@@ -36,6 +36,10 @@ double Pacer::wait(double simulated, double wall)
 
 void Pacer::measure(double simulated, double wall)
 {
+  total_simulated_ += simulated - last_simulated_;
+  total_wall_ += wall - last_wall_;
+  last_simulated_ = simulated;
+  last_wall_ = wall;
   const double elapsed = wall - window_wall_;
   if (elapsed >= (measured_ > 0.0 ? WINDOW : FIRST_WINDOW))
   {
@@ -48,6 +52,11 @@ void Pacer::measure(double simulated, double wall)
 double Pacer::realTimeFactor() const
 {
   return measured_;
+}
+
+double Pacer::meanRealTimeFactor() const
+{
+  return total_wall_ > 0.0 ? total_simulated_ / total_wall_ : 0.0;
 }
 
 }  // namespace frictional_contact_sim

@@ -10,6 +10,7 @@
 
 #include "frictional_contact_sim/ros/end_request.h"
 #include "frictional_contact_sim/ros/parameter_error.h"
+#include "frictional_contact_sim/ros/slave_api.h"
 
 namespace frictional_contact_sim
 {
@@ -77,6 +78,9 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
     publisher_.subscribers(topic);  // throws where it is none of this node's
   for (const std::string& warning : simulator_.warnings())
     ROS_WARN_STREAM(warning);
+  if (parameters.publish_clock)
+    for (const std::string& other : otherPublishers("/clock"))
+      ROS_WARN_STREAM(other << " publishes /clock too: time would jump; set ~publish_clock to false in one of the two");
   for (const std::string& joint : names_.unsupported_joints)
     ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
@@ -256,7 +260,9 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 /** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
-  if (!simulator_.step().taken)
+  simulator_.step();
+  summary_.add(simulator_.report(), simulator_.outcome());
+  if (!simulator_.outcome().taken)
   {
     publisher_.publishReport(pacer_.realTimeFactor());
     return judge("step " + std::to_string(simulator_.report().step));
@@ -340,6 +346,7 @@ int SimulatorNode::run()
     ROS_WARN_STREAM("failed steps not shown at the end: " << failure_lines_.heldBack());
   for (const auto& [subscriber, count] : delivery_.dropped())
     ROS_INFO_STREAM(subscriber << ": the subscriber dropped " << count << " messages");
+  ROS_INFO_STREAM(summary_.line(pacer_.meanRealTimeFactor()));
   return outcome_ == Outcome::FAILED ? 1 : 0;
 }
 

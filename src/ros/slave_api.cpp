@@ -167,13 +167,41 @@ XmlRpcClient* SlaveApi::client(const std::string& node)
   return client.get();
 }
 
-bool masterAnswers()
+namespace
+{
+/** @brief A question to the master that needs no argument but the caller's name. */
+bool askMaster(const char* method, XmlRpcValue& response)
 {
   XmlRpcClient master(ros::master::getHost().c_str(), static_cast<int>(ros::master::getPort()), "/");
   XmlRpcValue request;
-  XmlRpcValue response;
   request[0] = ros::this_node::getName();
-  return call(master, "getPid", request, response);
+  return call(master, method, request, response);
+}
+
+}  // namespace
+
+bool masterAnswers()
+{
+  XmlRpcValue response;
+  return askMaster("getPid", response);
+}
+
+std::vector<std::string> otherPublishers(const std::string& topic)
+{
+  std::vector<std::string> nodes;
+  XmlRpcValue response;
+  if (!askMaster("getSystemState", response))
+    return nodes;
+  // [publishers, subscribers, services], each [[topic, [node, ...]], ...]
+  const XmlRpcValue publishers = element(unwrap(response), 0);
+  for (int i = 0; i < length(publishers); ++i)
+  {
+    const XmlRpcValue names = element(publishers[i], 1);
+    for (int k = 0; text(element(publishers[i], 0)) == topic && k < length(names); ++k)
+      if (text(element(names, k)) != ros::this_node::getName())
+        nodes.push_back(text(element(names, k)));
+  }
+  return nodes;
 }
 
 }  // namespace frictional_contact_sim

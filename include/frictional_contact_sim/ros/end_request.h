@@ -7,7 +7,8 @@
 
 namespace frictional_contact_sim
 {
-/** @brief After ros::init with NoSigintHandler. Until endInOrder() a signal shuts ROS down, so that nothing waits on.
+/** @brief After ros::init with NoSigintHandler, before the first NodeHandle. Until endInOrder() a signal shuts ROS
+ * down, so that nothing waits on.
  */
 void endOnSignals();
 /** @brief From now on a signal, or rosnode kill, only sets the flag: the caller looks at it, sends what has to be sent,

@@ -23,6 +23,8 @@ public:
   void measure(double simulated, double wall);
   /** @brief Simulated over wall-clock time over the last quarter of a second or so; 0 before there is a measurement. */
   double realTimeFactor() const;
+  /** @brief The same over all that was measured, without what passed before a restart (pauses). */
+  double meanRealTimeFactor() const;
 
 private:
   double factor_;
@@ -31,6 +33,10 @@ private:
   double window_simulated_ = 0.0;
   double window_wall_ = 0.0;
   double measured_ = 0.0;
+  double last_simulated_ = 0.0;
+  double last_wall_ = 0.0;
+  double total_simulated_ = 0.0;
+  double total_wall_ = 0.0;
 };
 
 }  // namespace frictional_contact_sim

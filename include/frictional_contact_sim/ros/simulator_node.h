@@ -17,6 +17,7 @@
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
 #include "frictional_contact_sim/ros/pacer.h"
+#include "frictional_contact_sim/ros/run_summary.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
 
@@ -63,6 +64,7 @@ private:
   DeliveryMonitor delivery_;
   CommandListener commands_;
   Pacer pacer_;
+  RunSummary summary_;
   Throttle failure_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace frictional_contact_sim
 {
@@ -51,5 +52,8 @@ private:
 
 /** @brief Whether the master answers within half a second. After ros::init. */
 bool masterAnswers();
+
+/** @brief Nodes besides this one that publish a topic (resolved name), as the master knows it now. */
+std::vector<std::string> otherPublishers(const std::string& topic);
 
 }  // namespace frictional_contact_sim
