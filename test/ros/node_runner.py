@@ -23,9 +23,9 @@ def quadruped_urdf():
 
 
 class Node:
-    """The node as a child process; its standard error goes to a file."""
+    """The node as a child process; what it prints goes to files."""
 
-    def __init__(self, parameters, robot_description=None):
+    def __init__(self, parameters, robot_description=None, folder=None):
         for name in (NAME, "/robot_description"):
             if rospy.has_param(name):
                 rospy.delete_param(name)
@@ -35,9 +35,10 @@ class Node:
             rospy.set_param("/robot_description", robot_description)
         # Read through a handle of its own: seeking in the one the node writes to would move its writes too.
         self.log = tempfile.NamedTemporaryFile(mode="w")
+        self.output = tempfile.NamedTemporaryFile(mode="w")
         environment = dict(os.environ, ROSCONSOLE_FORMAT="[${severity}] ${message}")
         self.process = subprocess.Popen(["rosrun", "frictional_contact_sim", "simulator_node"], stderr=self.log,
-                                        stdout=subprocess.DEVNULL, env=environment)
+                                        stdout=self.output, env=environment, cwd=folder)
 
     def wait(self, timeout=TIMEOUT):
         """Exit code; a node that does not end is killed and gives None."""
@@ -55,6 +56,10 @@ class Node:
     def stderr(self):
         with open(self.log.name) as log:
             return log.read()
+
+    def stdout(self):
+        with open(self.output.name) as output:
+            return output.read()
 
     def lines(self, severity):
         """Messages of one severity, without colours."""

@@ -28,9 +28,9 @@ class PublishedRobots(unittest.TestCase):
         parameters = {"num_steps": STEPS, "real_time_factor": 0}
         if any(name in robot.stem for name in FIXED):
             parameters["base"] = "fixed"
-        node = Node(parameters, robot.read_text())
+        node = Node(parameters, robot.read_text(), robot.parent)  # H2's meshes are named relative to its file
         code = node.wait()
-        end = END_LINE.search(node.stderr())
+        end = END_LINE.search(node.stdout())
         if code != 0 or not end:
             yield f"{robot.stem}: exit code {code}: {node.stderr()[-300:]}"
             return
