@@ -7,12 +7,6 @@ namespace
 {
 thread_local long allocations = 0;
 thread_local int counters = 0;
-
-void note()
-{
-  if (counters > 0)
-    ++allocations;
-}
 }  // namespace
 
 namespace frictional_contact_sim
@@ -38,6 +32,15 @@ long AllocationCounter::count() const
 
 // glibc keeps its own entry points under these names; ours take the public ones. A sanitizer has taken them already.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+namespace
+{
+void note()
+{
+  if (counters > 0)
+    ++allocations;
+}
+}  // namespace
+
 extern "C"
 {
   void* __libc_malloc(size_t size);
