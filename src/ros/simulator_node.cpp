@@ -68,6 +68,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
               publisher_.losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
               parameters.hold_limit)
   , commands_(private_node, simulator_, names_, parameters.servo_gains)
+  , frames_(simulator_, names_, true)
+  , wrenches_(private_node, names_, simulator_)
   , pacer_(parameters.real_time_factor)
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , services_(private_node)
@@ -85,6 +87,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   setServoGains();
   simulator_.setStart();  // a reset keeps the gains
   advertiseServices();
+  reconfiguration_ = std::make_unique<Reconfiguration>(
+      private_node, simulator_, parameters_.real_time_factor, [this](double factor) { followSettings(factor); });
   lossless_nodes_ = node.subscribe<std_msgs::String>(LOSSLESS_NODES_TOPIC, 100,
                                                      [this](const std_msgs::String::ConstPtr& message)
                                                      { delivery_.addLosslessNode(message->data); });
@@ -134,8 +138,8 @@ void SimulatorNode::advertiseServices()
   services_.add("unpause_physics", unpause);
   services_.add("reset_world", reset_state);
   services_.add("reset_simulation", reset_all);
-  services_.add<std_srvs::SetBool>(
-      "set_paused", [this](const auto& request, auto&) { setPaused(request.data); });
+  services_.add<std_srvs::SetBool>("set_paused", [this](const auto& request, auto&) { setPaused(request.data); });
+  advertiseRequests();
   services_.add<Step>("step", [this](const auto& request, auto& response) { takeSteps(request, response); });
 }
 
@@ -164,6 +168,24 @@ void SimulatorNode::resetTime()
   publisher_.restartStamps();
   if (paused_)
     publisher_.publishState();
+  pacer_.restart(simulator_.time(), wallSeconds());
+}
+
+/** @brief The state, perhaps the time too, is another one. */
+void SimulatorNode::showSetState()
+{
+  if (paused_)
+    publisher_.publishState();
+  pacer_.restart(simulator_.time(), wallSeconds());
+}
+
+/** @brief What depends on settings that have changed. */
+void SimulatorNode::followSettings(double real_time_factor)
+{
+  publisher_.setTimeStep(simulator_.scenario().time_step);
+  if (real_time_factor != parameters_.real_time_factor)
+    pacer_ = Pacer(real_time_factor);
+  parameters_.real_time_factor = real_time_factor;
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 

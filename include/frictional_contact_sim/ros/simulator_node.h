@@ -9,15 +9,20 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
+#include "frictional_contact_sim/ros/frames.h"
 #include "frictional_contact_sim/ros/pacer.h"
+#include "frictional_contact_sim/ros/reconfiguration.h"
 #include "frictional_contact_sim/ros/services.h"
+#include "frictional_contact_sim/ros/state_services.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
+#include "frictional_contact_sim/ros/wrench_services.h"
 
 namespace frictional_contact_sim
 {
@@ -40,6 +45,7 @@ private:
   };
 
   void advertiseServices();
+  void advertiseRequests();
   void setServoGains();
 
   Outcome advance();
@@ -53,6 +59,8 @@ private:
   void setPaused(bool paused);
   void reset();
   void resetTime();
+  void showSetState();
+  void followSettings(double real_time_factor);
   void takeSteps(const Step::Request& request, Step::Response& response);
 
   NodeParameters parameters_;
@@ -61,6 +69,10 @@ private:
   StepPublisher publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
+  FrameResolver frames_;
+  WrenchListener wrenches_;
+  StateSlot saved_state_;
+  std::unique_ptr<Reconfiguration> reconfiguration_;
   Pacer pacer_;
   Throttle failure_lines_;
   int dumps_ = 0;
