@@ -28,6 +28,7 @@ std::string findRobotDescription(ros::NodeHandle& node, ros::NodeHandle& private
 int simulate(ros::NodeHandle& node)
 {
   ros::NodeHandle private_node("~");
+  Reconfiguration::forget();
   XmlRpc::XmlRpcValue tree;
   private_node.getParam(ros::this_node::getName(), tree);
   NodeParameters parameters = readParameters(tree, findRobotDescription(node, private_node));

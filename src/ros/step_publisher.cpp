@@ -27,13 +27,18 @@ bool listened(const ros::Publisher& publisher)
 
 }  // namespace
 
-StepDivider::StepDivider(double rate, double time_step)
+StepDivider::StepDivider(double rate, double time_step) : rate_(rate)
 {
-  if (rate > 0.0)
+  setTimeStep(time_step);
+}
+
+void StepDivider::setTimeStep(double time_step)
+{
+  if (rate_ > 0.0)
   {
     // No run has so many steps; and beyond 2^63 llround has no answer.
     constexpr double NEVER = 1e18;
-    steps_ = static_cast<std::uint64_t>(std::max(1LL, std::llround(std::min(NEVER, 1.0 / (rate * time_step)))));
+    steps_ = static_cast<std::uint64_t>(std::max(1LL, std::llround(std::min(NEVER, 1.0 / (rate_ * time_step)))));
   }
 }
 
@@ -258,11 +263,17 @@ void StepPublisher::publishRest()
 
 void StepPublisher::publishState()
 {
-  stamp_ += ros::Duration(0, 1);
+  stamp_ = std::max(stamp_ + ros::Duration(0, 1), toStamp(simulator_.time()));
   publishJointsAndContacts();
   publishOdometry();
   publishTransforms();
   publishMarkers();
+}
+
+void StepPublisher::setTimeStep(double time_step)
+{
+  for (StepDivider* divider : {&state_divider_, &clock_divider_, &tf_divider_, &marker_divider_})
+    divider->setTimeStep(time_step);
 }
 
 void StepPublisher::restartStamps()

@@ -61,6 +61,8 @@ void checkNumbers(const Simulator& simulator, const SimulationState& state)
 void Simulator::Impl::applyState()
 {
   outcome = StepOutcome{};
+  context.points = nullptr;
+  is_solved = false;
   solver.begin();
   const SimulationState before = state;
   if (const Body* body = findNotFinite())
@@ -149,6 +151,7 @@ void Simulator::Impl::solveImpact()
     solver.solve(assembly.problem(), guess, true, false, result);
     again = result.status == SolverStatus::CONVERGED ? assembly.again(context, result.solution, true) : Again::NO;
   } while (again == Again::FROM_ANSWER);
+  is_solved = true;
   if (again == Again::NEVER)
     setUnsatisfied();
   finishImpact();
@@ -197,6 +200,7 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
   if (state.dt != dt)
     setTimeStep(dt);
   impl_->restartReport();
+  impl_->moveLedgerZero(state.energy.potential);
   impl_->outcome = StepOutcome{};
   return impl_->outcome;
 }
@@ -204,6 +208,9 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
 const StepOutcome& Simulator::stateChanged()
 {
   impl_->applyState();
+  if (impl_->outcome.taken && impl_->context.points != nullptr)
+    for (const ContactPoint& point : *impl_->context.points)
+      impl_->report.max_penetration = std::max(impl_->report.max_penetration, -point.gap);
   return impl_->outcome;
 }
 

@@ -12,8 +12,6 @@
 
 namespace frictional_contact_sim
 {
-namespace
-{
 StepContext makeContext(const Scenario& scenario)
 {
   StepContext context;
@@ -26,6 +24,8 @@ StepContext makeContext(const Scenario& scenario)
   return context;
 }
 
+namespace
+{
 SimulationState makeState(const WorldModel& world)
 {
   SimulationState state;
@@ -48,12 +48,13 @@ std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
 Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   : world(std::move(world_model))
   , scenario(world->scenario)
+  , pairs(world->pairs)
   , collision(world->collision)
   , state(makeState(*world))
   , bodies(makeBodies(*world, state))
   , context(makeContext(scenario))
-  , contact_set(bodies, collision, world->pairs, state.rows.contacts)
-  , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
+  , contact_set(bodies, collision, pairs, state.rows.contacts)
+  , assembly(bodies, makeRowSources(bodies, collision, pairs, state.rows, &contact_set), state.rows)
   , solver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure)
 {
   rememberGood();
@@ -131,6 +132,7 @@ const StepOutcome& Simulator::reset()
   impl_->updateEnds();
   impl_->rememberGood();
   impl_->restartReport();
+  impl_->moveLedgerZero(impl_->start.energy.potential);
   impl_->outcome = impl_->start_outcome;
   return impl_->outcome;
 }
@@ -290,10 +292,37 @@ void Simulator::addWrench(int body, const ExternalWrench& wrench)
   impl_->state.bodies[body].wrenches.back().frame = frame;
 }
 
+void Simulator::replaceWrench(int body, const ExternalWrench& wrench)
+{
+  addWrench(body, wrench);
+  std::vector<ExternalWrench>& wrenches = impl_->state.bodies[body].wrenches;
+  ExternalWrench added = wrenches.back();
+  added.is_replaceable = true;
+  wrenches.pop_back();
+  const auto old = std::find_if(wrenches.begin(), wrenches.end(),
+                                [&added](const ExternalWrench& other)
+                                { return other.is_replaceable && other.frame == added.frame; });
+  const bool is_zero = added.force.isZero(0.0) && added.torque.isZero(0.0);
+  if (old == wrenches.end() && !is_zero)
+    wrenches.push_back(added);
+  else if (old != wrenches.end() && is_zero)
+    wrenches.erase(old);
+  else if (old != wrenches.end())
+    *old = added;
+}
+
 void Simulator::clearWrenches()
 {
-  for (BodyState& body : impl_->state.bodies)
-    body.wrenches.clear();
+  for (int body = 0; body < bodyCount(); ++body)
+    clearWrenches(body);
+}
+
+void Simulator::clearWrenches(int body, int frame)
+{
+  std::vector<ExternalWrench>& wrenches = impl_->state.bodies[body].wrenches;
+  wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
+                                [frame](const ExternalWrench& wrench) { return frame < 0 || wrench.frame == frame; }),
+                 wrenches.end());
 }
 
 void Simulator::setSolver(const std::string& name)
@@ -347,6 +376,11 @@ void Simulator::setDumpFolder(const std::string& folder, int most)
 const IncrementalProblem& Simulator::problem() const
 {
   return impl_->assembly.problem();
+}
+
+bool Simulator::isProblemSolved() const
+{
+  return impl_->is_solved;
 }
 
 const Solution& Simulator::solution() const

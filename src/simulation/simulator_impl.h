@@ -15,6 +15,9 @@
 
 namespace frictional_contact_sim
 {
+/** What a step is told by a scenario. */
+StepContext makeContext(const Scenario& scenario);
+
 struct Simulator::Impl
 {
   explicit Impl(std::shared_ptr<const WorldModel> world_model);
@@ -48,11 +51,14 @@ struct Simulator::Impl
   void finishImpact();  ///< its answer, or what the failure policy says
   void restartReport();
   void restartLedger();
+  void moveLedgerZero(double potential);  ///< after bookEnergies. @param potential what the ledger had so far [J]
+  void setMaterials(const MaterialTable& materials);
   void bookEnergies();
   void updateEnds();
 
   std::shared_ptr<const WorldModel> world;
   Scenario scenario;
+  PairTable pairs;  ///< the world's until materials are set
   CollisionWorld collision;
   SimulationState state;
   SimulationState start;  ///< what a reset goes back to
@@ -70,6 +76,7 @@ struct Simulator::Impl
   std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> good;
   Solution guess;
   SolverResult result;
+  bool is_solved = false;  ///< assembly.problem() and result belong together
   StepOutcome outcome;
   StepSummary report;
   UnionFind island_of;

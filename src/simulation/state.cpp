@@ -34,7 +34,13 @@ void visit(StateArchive& archive, ExternalWrench& wrench)
   archive.vector("wrench.force", wrench.force);
   archive.vector("wrench.torque", wrench.torque);
   archive.vector("wrench.point", wrench.point);
-  archive.flag("wrench.world_frame", wrench.world_frame);
+  // One number for both: states without replaceable wrenches are those of before there were any, to the bit.
+  std::uint64_t kind = (wrench.world_frame ? 1U : 0U) + (wrench.is_replaceable ? 2U : 0U);
+  archive.integer("wrench.world_frame", kind);
+  if (kind > 3)
+    throw StateError("wrench.world_frame is " + std::to_string(kind) + ", expected at most 3");
+  wrench.world_frame = kind % 2 == 1;
+  wrench.is_replaceable = kind >= 2;
   archive.number("wrench.from", wrench.from);
   archive.number("wrench.until", wrench.until);
 }

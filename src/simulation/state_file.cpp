@@ -138,7 +138,7 @@ std::string readPayload(const std::string& path)
     throw StateError("cannot be read");
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (bytes.compare(0, MAGIC.size(), MAGIC) != 0)
-    throw StateError("does not begin with " + MAGIC + ", expected a file of run_scenario --save-state");
+    throw StateError("does not begin with " + MAGIC + ", expected a file of ~save_state or run_scenario --save-state");
   if (bytes.size() < HEADER)
     throw StateError("is cut off in its header");
   const std::uint64_t version = parse(bytes, 8, 4);
@@ -178,7 +178,7 @@ void saveState(const Simulator& simulator, const std::string& path)
   }
 }
 
-const StepOutcome& loadState(Simulator& simulator, const std::string& path)
+SimulationState readState(const Simulator& simulator, const std::string& path)
 {
   try
   {
@@ -187,6 +187,19 @@ const StepOutcome& loadState(Simulator& simulator, const std::string& path)
     SimulationState state = simulator.state();
     visitState(reader, state);
     reader.expectEnd();
+    return state;
+  }
+  catch (const std::exception& error)
+  {
+    throw StateError(path + ": " + error.what());
+  }
+}
+
+const StepOutcome& loadState(Simulator& simulator, const std::string& path)
+{
+  const SimulationState state = readState(simulator, path);
+  try
+  {
     return simulator.setState(state);
   }
   catch (const std::exception& error)

@@ -28,11 +28,13 @@ const StepOutcome& Simulator::step()
   Impl& sim = *impl_;
   sim.outcome.fclib_file.clear();
   sim.solver.begin();
+  sim.is_solved = false;
   try
   {
     sim.moveToMidpoint();
     sim.assembly.begin(sim.context);
     sim.solveStep();
+    sim.is_solved = true;
   }
   catch (const std::exception& error)
   {

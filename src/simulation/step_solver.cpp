@@ -87,12 +87,20 @@ void StepSolver::setOptions(const FailureOptions& options)
   others_.clear();
 }
 
-void StepSolver::setStop(const std::atomic<bool>* stop)
+void StepSolver::setStopping(const StoppingOptions& stopping)
 {
+  stopping.validate();
   answered_ = helper_ = nullptr;
-  stopping_.stop = stop;
+  stopping_ = stopping;
   method_->setStopping(stopping_);
   others_.clear();
+}
+
+void StepSolver::setStop(const std::atomic<bool>* stop)
+{
+  StoppingOptions stopping = stopping_;
+  stopping.stop = stop;
+  setStopping(stopping);
 }
 
 void StepSolver::begin()

@@ -23,6 +23,8 @@ class StepSolver
 public:
   StepSolver(std::unique_ptr<Solver> method, const StoppingOptions& stopping, const FailureOptions& options);
   void setMethod(std::unique_ptr<Solver> method);
+  /** @throws std::invalid_argument naming the field; nothing has changed then */
+  void setStopping(const StoppingOptions& stopping);
   void setStop(const std::atomic<bool>* stop);
   void setOptions(const FailureOptions& options);
 

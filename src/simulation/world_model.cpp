@@ -319,8 +319,8 @@ SurfaceSide bodySide(const WorldModel& world, const ShapeInfo& shape)
   const BodySpec& spec = world.scenario.bodies[shape.body];
   const auto own = spec.link_materials.find(shape.link_name);
   if (own != spec.link_materials.end())
-    return {own->second, -1.0};
-  return {spec.material, world.bodies[shape.body].tree.shapes[shape.index].friction};
+    return {own->second, -1.0, spec.name, shape.link_name};
+  return {spec.material, world.bodies[shape.body].tree.shapes[shape.index].friction, spec.name, shape.link_name};
 }
 
 std::vector<SurfaceSide> surfaceSides(const WorldModel& world)
@@ -382,7 +382,8 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
       world->warnings.push_back("body '" + scenario.bodies[b].name + "': " + line);
   for (const std::string& line : findBuriedStarts(*world))
     world->warnings.push_back(line);
-  world->pairs = PairTable(scenario.materials, surfaceSides(*world));
+  world->sides = surfaceSides(*world);
+  world->pairs = PairTable(scenario.materials, world->sides);
   world->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return world;
 }

@@ -47,6 +47,7 @@ struct ExternalWrench
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< where the force acts, in the link frame [m]
   bool world_frame = true;  ///< axes of force and torque: world, else the link's
+  bool is_replaceable = false;  ///< by the next such wrench on this frame; one of a body's list at most
   double from = 0.0;  ///< [s]
   double until = std::numeric_limits<double>::infinity();
 };

@@ -1,7 +1,7 @@
 #pragma once
 /**
  * @file pair_table.h
- * @brief Friction and restitution by pair of shapes, from tables made once.
+ * @brief Friction and restitution by pair of shapes, from tables made when materials change.
  */
 #include <vector>
 
@@ -19,6 +19,8 @@ public:
   {
     return table_[class_of_[shape_a] * classes_ + class_of_[shape_b]];
   }
+  /** @brief True when pairs with the creep law have the friction of their curve, whose shape depends on it. */
+  bool keepsCreepCurves() const;
   /** @brief True when some pair has the creep law. */
   bool hasCreep() const;
 

@@ -6,20 +6,24 @@
  */
 #include <frictional_contact_sim/Step.h>
 #include <ros/node_handle.h>
-#include <std_srvs/Empty.h>
-#include <std_srvs/SetBool.h>
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
+#include "frictional_contact_sim/ros/frames.h"
 #include "frictional_contact_sim/ros/pacer.h"
+#include "frictional_contact_sim/ros/reconfiguration.h"
 #include "frictional_contact_sim/ros/run_summary.h"
+#include "frictional_contact_sim/ros/services.h"
+#include "frictional_contact_sim/ros/state_services.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
+#include "frictional_contact_sim/ros/wrench_services.h"
 
 namespace frictional_contact_sim
 {
@@ -41,7 +45,8 @@ private:
     FAILED
   };
 
-  void advertiseServices(ros::NodeHandle& private_node);
+  void advertiseServices();
+  void advertiseRequests();
   void setServoGains();
 
   Outcome advance();
@@ -55,7 +60,9 @@ private:
   void setPaused(bool paused);
   void reset();
   void resetTime();
-  bool stepService(Step::Request& request, Step::Response& response);
+  void showSetState();
+  void followSettings(double real_time_factor);
+  void takeSteps(const Step::Request& request, Step::Response& response);
 
   NodeParameters parameters_;
   Simulator simulator_;
@@ -63,12 +70,16 @@ private:
   StepPublisher publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
+  FrameResolver frames_;
+  WrenchListener wrenches_;
+  StateSlot saved_state_;
+  std::unique_ptr<Reconfiguration> reconfiguration_;
   Pacer pacer_;
   RunSummary summary_;
   Throttle failure_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
-  std::vector<ros::ServiceServer> services_;
+  ServiceTable services_;
   ros::Subscriber lossless_nodes_;
   bool paused_ = false;
   bool waiting_ = false;

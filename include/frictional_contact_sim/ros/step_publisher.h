@@ -25,9 +25,11 @@ class StepDivider
 public:
   /** @param rate per simulated second; 0 = every step. Rounded to a whole number of steps. */
   StepDivider(double rate, double time_step);
+  void setTimeStep(double time_step);
   bool due(std::uint64_t step) const;
 
 private:
+  double rate_ = 0.0;
   std::uint64_t steps_ = 1;
 };
 
@@ -42,10 +44,12 @@ public:
   /** @brief What was not due of the last step, when nothing moves on: the picture is of the present state. */
   void publishRest();
   /**
-   * @brief The state without a step, after a reset: everything but the clock and the report. It gets a stamp of its
-   * own, a nanosecond after the last one, since tf takes no second transform with the same.
+   * @brief The state without a step, after a reset or a set: everything but the clock and the report. It gets a
+   * stamp of its own, at least a nanosecond after the last one, since tf takes no second transform with the same.
    */
   void publishState();
+  /** @brief Rates are per simulated second: they follow the time step [s]. */
+  void setTimeStep(double time_step);
   /** @brief Time was set back: stamps follow it. */
   void restartStamps();
   /** @brief While on, who subscribes gets the present state at once; else the next step is soon. */

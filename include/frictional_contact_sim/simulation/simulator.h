@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,24 @@ public:
   void resetTime();
   /** @brief From now on. @throws std::invalid_argument unless finite and > 0 */
   void setTimeStep(double dt);
+  /** @brief From the next step on; the ledger's zero moves with the potential energy, so that it stays balanced.
+   *  @param gravity [m/s^2] @throws std::invalid_argument unless finite */
+  void setGravity(const Eigen::Vector3d& gravity);
+  /** @brief Tolerance and budgets of every solve, from the next step on. @throws std::invalid_argument naming the field
+   */
+  void setStopping(const StoppingOptions& stopping);
+  /**
+   * @brief Friction of all pairs of two groups of surfaces, from the next step on; the last word on a pair is what
+   * counts. Like all settings no part of the state: a reset keeps it.
+   * @param a, b a material, a body, body/link, or "ground"
+   * @param friction [-] >= 0
+   * @param restitution [-] in [0, 1], none: as it is
+   * @throws std::invalid_argument naming what is unknown or out of range, or a pair with the creep law
+   */
+  void setFriction(const std::string& a, const std::string& b, double friction,
+                   std::optional<double> restitution = std::nullopt);
+  /** @brief Of every material without its own entry. @throws std::invalid_argument as setFriction */
+  void setDefaultFriction(double friction);
 
   const SimulationState& state() const;
   /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays.
@@ -77,7 +96,8 @@ public:
   /** @brief Effort of a joint's drive over the last step, after saturation [N m] or [N]. */
   double effort(int body, int joint) const;
   /**
-   * @brief After a position or velocity was written: impact solve at q, warm starts dropped, ledger anew.
+   * @brief After a position or velocity was written: impact solve at q, warm starts dropped, ledger anew; the report's
+   * max_penetration is that at q.
    * Where that fails the failure policy says what is left: under STOP and PAUSE, and whenever a number is not finite,
    * the state goes back to the one before anything was written.
    */
@@ -92,7 +112,12 @@ public:
   /** @brief Adds a wrench; its times are on the scenario's clock. @throws std::invalid_argument naming an unknown link
    */
   void addWrench(int body, const ExternalWrench& wrench);
+  /** @brief Puts the wrench in place of the last one that this set on its link, from now on until the next; zero only
+   * ends that one. @throws std::invalid_argument as addWrench */
+  void replaceWrench(int body, const ExternalWrench& wrench);
   void clearWrenches();
+  /** @brief Of one body. @param frame of its model, -1 = all */
+  void clearWrenches(int body, int frame = -1);
 
   /** @throws std::invalid_argument listing the valid names */
   void setSolver(const std::string& name);
@@ -111,6 +136,8 @@ public:
   /** @brief The problem of the last step and its answer (for FCLib files and tests). */
   const IncrementalProblem& problem() const;
   const Solution& solution() const;
+  /** @brief False before the first solve, and after a state was set for which nothing was to be solved. */
+  bool isProblemSolved() const;
   /** @brief hashOf(state()). */
   std::uint64_t stateHash() const;
 

@@ -16,6 +16,12 @@ namespace frictional_contact_sim
 void saveState(const Simulator& simulator, const std::string& path);
 
 /**
+ * @brief The state in a file, of the simulator's bodies.
+ * @throws StateError as loadState
+ */
+SimulationState readState(const Simulator& simulator, const std::string& path);
+
+/**
  * @brief Reads a state and goes on from it; solver, tolerance and failure policy stay the simulator's own.
  * @throws StateError with one line that names the file, what was found and what was expected, for a file that is cut,
  * changed, of another version, or of other bodies; the simulator is then as it was

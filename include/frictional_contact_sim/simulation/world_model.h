@@ -21,6 +21,7 @@ struct WorldModel
   std::vector<BodyModel> bodies;
   std::vector<BodyState> start;  ///< of each body, before the impact solve of the start
   CollisionWorld collision;  ///< copies share its shapes
+  std::vector<SurfaceSide> sides;  ///< by shape handle
   PairTable pairs;
   std::vector<std::string> warnings;  ///< from loading, one line each
   double loading_seconds = 0.0;
