@@ -68,6 +68,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
               parameters.hold_limit)
   , commands_(private_node, simulator_, names_, parameters.servo_gains)
   , pacer_(parameters.real_time_factor)
+  , diagnostics_(node, private_node, [this] { return runState(); })
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
@@ -91,6 +92,12 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
   if (judge("impact at the start") == Outcome::FAILED)
     outcome_ = Outcome::FAILED;
+}
+
+RunState SimulatorNode::runState() const
+{
+  return {paused_ || waiting_, parameters_.real_time_factor, pacer_.realTimeFactor(),
+          simulator_.scenario().stopping.tolerance, delivery_.dropped()};
 }
 
 /** @brief ~servo_gains for the servos that hold the initial position. */
@@ -175,6 +182,7 @@ void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
   publisher_.restartStamps();
+  publisher_.publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
   if (paused_)
     publisher_.publishState();
   pacer_.restart(simulator_.time(), wallSeconds());
@@ -256,7 +264,10 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 /** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
-  if (!simulator_.step().taken)
+  const double start = wallSeconds();
+  const bool taken = simulator_.step().taken;
+  diagnostics_.addStep(simulator_.report(), simulator_.outcome().converged(), wallSeconds() - start);
+  if (!taken)
   {
     publisher_.publishReport(pacer_.realTimeFactor());
     return judge("step " + std::to_string(simulator_.report().step));
@@ -282,6 +293,7 @@ void SimulatorNode::hold(const std::function<void()>& pass)
   const double start = wallSeconds();
   while (going() && delivery_.lagging(wallSeconds() - start))
     pass();
+  diagnostics_.addHold(wallSeconds() - start);
 }
 
 bool SimulatorNode::subscribersStand()

@@ -16,6 +16,7 @@
 
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
+#include "frictional_contact_sim/ros/diagnostics.h"
 #include "frictional_contact_sim/ros/pacer.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
@@ -42,6 +43,7 @@ private:
 
   void advertiseServices(ros::NodeHandle& private_node);
   void setServoGains();
+  RunState runState() const;
 
   Outcome advance();
   Outcome judge(const std::string& where);
@@ -63,6 +65,7 @@ private:
   DeliveryMonitor delivery_;
   CommandListener commands_;
   Pacer pacer_;
+  DiagnosticsPublisher diagnostics_;
   Throttle failure_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
