@@ -85,6 +85,24 @@ void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eig
   }
 }
 
+void computeLinkAccelerations(const MultibodyModel& model, const VectorIn& v, const VectorIn& rate, MultibodyData& data)
+{
+  forwardVelocities(model, v, data);
+  for (size_t i = 0; i < model.links.size(); ++i)
+  {
+    const Joint& joint = model.joints[i];
+    const bool is_root = joint.parent < 0;
+    const Vector6d parent_velocity = is_root ? Vector6d(Vector6d::Zero()) : data.link_velocity[joint.parent];
+    Vector6d& acceleration = data.link_acceleration[i];
+    acceleration = is_root ? Vector6d(Vector6d::Zero()) : data.link_acceleration[joint.parent];
+    const Eigen::Vector3d arm = data.link_pose[i].translation() - data.reference;
+    acceleration += velocityProduct(joint, v, parent_velocity, data.link_velocity[i], arm, data.motion_subspace);
+    const int end = joint.v_index + velocitySize(joint.type);
+    for (int k = joint.v_index; k < end; ++k)
+      acceleration += rate[k] * data.motion_subspace.col(k);
+  }
+}
+
 void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau)
 {

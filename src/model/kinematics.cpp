@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "spatial.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -86,20 +88,6 @@ void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Ve
   }
 }
 
-/** Inertia of a link in world axes about the reference (parallel axis theorem). */
-void moveInertia(const RigidInertia& inertia, const Eigen::Isometry3d& pose, const Eigen::Vector3d& reference,
-                 WorldInertia& world)
-{
-  const Eigen::Matrix3d axes = pose.linear();
-  const Eigen::Vector3d arm = axes * inertia.center + pose.translation() - reference;
-  world.mass = inertia.mass;
-  world.moment = inertia.mass * arm;
-  const Eigen::Matrix3d half = axes * inertia.rotational;
-  world.rotational.noalias() = half * axes.transpose();
-  world.rotational.noalias() -= world.moment * arm.transpose();
-  world.rotational.diagonal().array() += world.moment.dot(arm);
-}
-
 /** Quaternion of the rotation vector, by a series where sin(x)/x would divide by almost zero. */
 Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_vector)
 {
@@ -115,6 +103,19 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_vector)
   return quaternion;
 }
 }  // namespace
+
+void moveInertia(const RigidInertia& inertia, const Eigen::Isometry3d& pose, const Eigen::Vector3d& reference,
+                 WorldInertia& world)
+{
+  const Eigen::Matrix3d axes = pose.linear();
+  const Eigen::Vector3d arm = axes * inertia.center + pose.translation() - reference;
+  world.mass = inertia.mass;
+  world.moment = inertia.mass * arm;
+  const Eigen::Matrix3d half = axes * inertia.rotational;
+  world.rotational.noalias() = half * axes.transpose();
+  world.rotational.noalias() -= world.moment * arm.transpose();
+  world.rotational.diagonal().array() += world.moment.dot(arm);
+}
 
 Eigen::VectorXd zeroPosition(const MultibodyModel& model)
 {

@@ -43,4 +43,8 @@ inline Vector6d multiply(const WorldInertia& inertia, const Vector6d& velocity)
   return momentum;
 }
 
+/** @brief Inertia of a link at `pose` in world axes about the reference (parallel axis theorem). */
+void moveInertia(const RigidInertia& inertia, const Eigen::Isometry3d& pose, const Eigen::Vector3d& reference,
+                 WorldInertia& world);
+
 }  // namespace frictional_contact_sim

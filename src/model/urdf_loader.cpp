@@ -155,6 +155,8 @@ private:
         addLink(child, makeJoint(joint, parent.link, placement));
         addFrame(child, static_cast<int>(model_.links.size()) - 1, Eigen::Isometry3d::Identity());
       }
+      model_.frames.back().parent = model_.findFrame(joint.parent_link_name);
+      model_.frames.back().joint = joint.name;
       std::vector<const urdf::Joint*> next = childJoints(child);
       waiting.insert(waiting.end(), next.rbegin(), next.rend());
     }
@@ -199,7 +201,10 @@ private:
   {
     model_.frames.push_back({link.name, carrier, placement});
     if (link.inertial)
-      parts_[carrier].push_back(transform(toInertia(*link.inertial), placement));
+    {
+      model_.frames.back().inertia = toInertia(*link.inertial);
+      parts_[carrier].push_back(transform(model_.frames.back().inertia, placement));
+    }
     for (size_t k = 0; k < link.collision_array.size(); ++k)
       addShape(link, static_cast<int>(k));
   }

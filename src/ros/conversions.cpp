@@ -8,8 +8,6 @@ namespace frictional_contact_sim
 {
 const char* const WORLD_FRAME = "world";
 
-namespace
-{
 void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target)
 {
   target.x = source.x();
@@ -17,6 +15,8 @@ void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target)
   target.z = source.z();
 }
 
+namespace
+{
 void fillPoint(const Eigen::Vector3d& source, geometry_msgs::Point& target)
 {
   target.x = source.x();
@@ -64,6 +64,30 @@ std::uint8_t toMessage(ContactMode mode)
       break;
   }
   return Contact::OPEN;
+}
+
+/** @param swapped side b comes first */
+void fillContact(const Simulator& simulator, const NameTable& names, const ContactState& source, bool swapped,
+                 Contact& target)
+{
+  const double sign = swapped ? -1.0 : 1.0;
+  const double dt = impulseTime(simulator);
+  const ShapeInfo& first = simulator.shape(swapped ? source.shape_b : source.shape_a);
+  const ShapeInfo& second = simulator.shape(swapped ? source.shape_a : source.shape_b);
+  target.id = source.id.number();
+  fillSide(first, names, target.body_a, target.link_a, target.collision_a);
+  fillSide(second, names, target.body_b, target.link_b, target.collision_b);
+  fillPoint(source.position, target.position);
+  fillVector(sign * source.normal, target.normal);
+  target.gap = source.gap;
+  target.friction = source.friction;
+  target.restitution = source.restitution;
+  fillVector(sign * source.impulse / dt, target.force);
+  fillVector(sign * source.impulse, target.impulse);
+  fillVector(sign * source.velocity, target.relative_velocity);
+  target.mode = toMessage(source.mode);
+  target.residual = source.residual;
+  target.cone_margin = source.cone_margin;
 }
 
 std::uint8_t toMessage(SolverStatus status)
@@ -130,27 +154,43 @@ void fillContacts(const Simulator& simulator, const NameTable& names, const ros:
 {
   fillHeader(stamp, message.header);
   const std::vector<ContactState>& contacts = simulator.contacts();
-  const double dt = impulseTime(simulator);
   message.contacts.resize(contacts.size());
   for (size_t i = 0; i < contacts.size(); ++i)
+    fillContact(simulator, names, contacts[i], false, message.contacts[i]);
+}
+
+void fillPose(const Eigen::Isometry3d& pose, geometry_msgs::Pose& message)
+{
+  fillPoint(pose.translation(), message.position);
+  fillQuaternion(pose.linear(), message.orientation);
+}
+
+void fillLinkContacts(const Simulator& simulator, const NameTable& names, int body, int frame, const ros::Time& stamp,
+                      ContactArray& message)
+{
+  fillHeader(stamp, message.header);
+  const auto is_link = [&](int handle)
+  { return simulator.shape(handle).body == body && simulator.shape(handle).frame == frame; };
+  size_t count = 0;
+  for (const ContactState& contact : simulator.contacts())
   {
-    const ContactState& source = contacts[i];
-    Contact& target = message.contacts[i];
-    target.id = source.id.number();
-    fillSide(simulator.shape(source.shape_a), names, target.body_a, target.link_a, target.collision_a);
-    fillSide(simulator.shape(source.shape_b), names, target.body_b, target.link_b, target.collision_b);
-    fillPoint(source.position, target.position);
-    fillVector(source.normal, target.normal);
-    target.gap = source.gap;
-    target.friction = source.friction;
-    target.restitution = source.restitution;
-    fillVector(source.impulse / dt, target.force);
-    fillVector(source.impulse, target.impulse);
-    fillVector(source.velocity, target.relative_velocity);
-    target.mode = toMessage(source.mode);
-    target.residual = source.residual;
-    target.cone_margin = source.cone_margin;
+    const bool swapped = is_link(contact.shape_b);
+    if (!swapped && !is_link(contact.shape_a))
+      continue;
+    if (message.contacts.size() == count)
+      message.contacts.emplace_back();
+    fillContact(simulator, names, contact, swapped, message.contacts[count++]);
   }
+  message.contacts.resize(count);
+}
+
+void fillWrench(const Vector6d& wrench, const std::string& frame_id, const ros::Time& stamp,
+                geometry_msgs::WrenchStamped& message)
+{
+  message.header.stamp = stamp;
+  message.header.frame_id = frame_id;
+  fillVector(wrench.head<3>(), message.wrench.force);
+  fillVector(wrench.tail<3>(), message.wrench.torque);
 }
 
 void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message)
@@ -196,14 +236,10 @@ void fillOdometry(const Simulator& simulator, const NameTable& names, int body, 
   fillVector(pose.linear().transpose() * velocity.tail<3>(), message.twist.twist.angular);
 }
 
-void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
-                   geometry_msgs::TransformStamped& message)
+void fillTransform(const Eigen::Isometry3d& pose, geometry_msgs::Transform& message)
 {
-  fillHeader(stamp, message.header);
-  message.child_frame_id = names.roots[body];
-  const Eigen::Isometry3d pose = rootPose(simulator, body);
-  fillVector(pose.translation(), message.transform.translation);
-  fillQuaternion(pose.linear(), message.transform.rotation);
+  fillVector(pose.translation(), message.translation);
+  fillQuaternion(pose.linear(), message.rotation);
 }
 
 }  // namespace frictional_contact_sim

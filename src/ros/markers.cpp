@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 #include "frictional_contact_sim/ros/conversions.h"
 
@@ -9,10 +11,21 @@ namespace frictional_contact_sim
 {
 namespace
 {
+using visualization_msgs::Marker;
+
 constexpr int CONE_SIDES = 24;
-constexpr double CONE_HEIGHT = 0.04;  // [m]
 constexpr double CONE_OPACITY = 0.35;  // forces stay visible through it
 constexpr double PI = 3.14159265358979323846;
+
+// In sizes of the scene.
+constexpr double WEIGHT_ARROW = 0.5;
+constexpr double SHORTEST_ARROW = 0.1;
+constexpr double LONGEST_ARROW = 1.5;
+constexpr double SHAFT = 0.015;
+constexpr double HEAD = 0.035;
+constexpr double HEAD_LENGTH = 0.06;
+constexpr double CONE_HEIGHT = 0.07;
+constexpr double LETTERS = 0.045;
 
 std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
 {
@@ -49,30 +62,61 @@ geometry_msgs::Point toPoint(const Eigen::Vector3d& source)
   return point;
 }
 
-void fillArrow(const ContactState& contact, double force_scale, double dt, visualization_msgs::Marker& arrow)
+Marker makeMarker(const char* name_space, size_t id, int type, const ros::Time& stamp)
 {
-  arrow.ns = "force";
-  arrow.type = visualization_msgs::Marker::ARROW;
-  arrow.action = visualization_msgs::Marker::ADD;
-  arrow.pose.orientation.w = 1.0;
-  arrow.points.resize(2);
-  arrow.points[0] = toPoint(contact.position);
-  arrow.points[1] = toPoint(contact.position + contact.impulse * (force_scale / dt));
-  arrow.scale.x = 0.01;  // shaft and head diameter, head length [m]
-  arrow.scale.y = 0.02;
-  arrow.scale.z = 0.03;
-  arrow.color = colorOf(contact.mode, 1.0);
+  Marker marker;
+  marker.header.frame_id = WORLD_FRAME;
+  marker.header.stamp = stamp;
+  marker.ns = name_space;
+  marker.id = static_cast<int>(id);
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  return marker;
+}
+
+/** @brief Those of the last message that this one does not have any more. */
+void appendDeleted(const char* name_space, size_t now, size_t previous, const ros::Time& stamp,
+                   visualization_msgs::MarkerArray& message)
+{
+  for (size_t id = now; id < previous; ++id)
+  {
+    message.markers.push_back(makeMarker(name_space, id, Marker::ARROW, stamp));
+    message.markers.back().action = Marker::DELETE;
+  }
+}
+
+/** @brief Along the force [N], as long as it may be drawn [m]. */
+Eigen::Vector3d arrowOf(const Eigen::Vector3d& force, const MarkerScale& scale)
+{
+  const double length = force.norm() * scale.force;
+  if (!(length > 0.0) || !std::isfinite(length))
+    return Eigen::Vector3d::Zero();
+  return std::clamp(length, SHORTEST_ARROW * scale.size, LONGEST_ARROW * scale.size) * force.normalized();
+}
+
+Marker makeArrow(const ContactState& contact, size_t id, const Eigen::Vector3d& arrow, const MarkerScale& scale,
+                 const ros::Time& stamp)
+{
+  Marker marker = makeMarker("force", id, Marker::ARROW, stamp);
+  marker.points = {toPoint(contact.position), toPoint(contact.position + arrow)};
+  marker.scale.x = SHAFT * scale.size;  // diameter of the shaft, of the head, length of the head [m]
+  marker.scale.y = HEAD * scale.size;
+  marker.scale.z = std::min(HEAD_LENGTH * scale.size, 0.5 * arrow.norm());
+  marker.color = colorOf(contact.mode, 1.0);
+  return marker;
 }
 
 /** @brief Side faces of the cone |r_T| <= mu r_N with its tip at the contact, opening to the side of a. */
-void appendCone(const ContactState& contact, visualization_msgs::Marker& cones)
+void appendCone(const ContactState& contact, const MarkerScale& scale, Marker& cones)
 {
-  const double radius = std::min(contact.friction, 2.0) * CONE_HEIGHT;
+  const double height = CONE_HEIGHT * scale.size;
+  const double radius = std::min(contact.friction, 2.0) * height;
   const std_msgs::ColorRGBA color = colorOf(contact.mode, CONE_OPACITY);
   const auto rim = [&](int side)
   {
     const double angle = 2.0 * PI * side / CONE_SIDES;
-    return toPoint(contact.position + CONE_HEIGHT * contact.normal + radius * std::cos(angle) * contact.tangent_1 +
+    return toPoint(contact.position + height * contact.normal + radius * std::cos(angle) * contact.tangent_1 +
                    radius * std::sin(angle) * contact.tangent_2);
   };
   for (int side = 0; side < CONE_SIDES; ++side)
@@ -84,55 +128,137 @@ void appendCone(const ContactState& contact, visualization_msgs::Marker& cones)
   }
 }
 
-}  // namespace
-
-double defaultForceScale(const Simulator& simulator)
+Marker makeText(const char* name_space, size_t id, const std::string& text, const Eigen::Vector3d& place,
+                const MarkerScale& scale, const ros::Time& stamp)
 {
-  double mass = 0.0;
-  for (int body = 0; body < simulator.bodyCount(); ++body)
-    mass += simulator.model(body).totalMass();
-  const double weight = mass * simulator.scenario().gravity.norm();
-  return weight > 0.0 ? 0.5 / weight : 0.01;
+  Marker marker = makeMarker(name_space, id, Marker::TEXT_VIEW_FACING, stamp);
+  marker.pose.position = toPoint(place);
+  marker.scale.z = LETTERS * scale.size;  // height of a capital letter [m]
+  marker.color = makeColor(0.1, 0.1, 0.1, 1.0);
+  marker.text = text;
+  return marker;
 }
 
-size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale, size_t previous_arrows,
-                   visualization_msgs::MarkerArray& message)
+std::string newtons(double force)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g N", force);
+  return text;
+}
+
+/** @brief The sum of the forces between two shapes, above the highest of their arrows. */
+size_t appendValues(const std::vector<ContactState>& contacts, double dt, const MarkerScale& scale,
+                    const ros::Time& stamp, visualization_msgs::MarkerArray& message)
+{
+  size_t values = 0;
+  for (size_t first = 0, end = 0; first < contacts.size(); first = end)
+  {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Vector3d place = contacts[first].position;
+    // Contacts are ordered by their shapes.
+    for (end = first; end < contacts.size() && contacts[end].shape_a == contacts[first].shape_a &&
+                      contacts[end].shape_b == contacts[first].shape_b;
+         ++end)
+    {
+      const Eigen::Vector3d force = contacts[end].impulse / dt;
+      const Eigen::Vector3d tip = contacts[end].position + arrowOf(force, scale);
+      sum += force;
+      if (end == first || tip.z() > place.z())
+        place = tip;
+    }
+    place.z() += LETTERS * scale.size;
+    if (sum.norm() > 0.0)
+      message.markers.push_back(makeText("value", values++, newtons(sum.norm()), place, scale, stamp));
+  }
+  return values;
+}
+
+void appendLegend(const MarkerScale& scale, const ros::Time& stamp, visualization_msgs::MarkerArray& message)
+{
+  const std::pair<const char*, ContactMode> LINES[] = {{"open", ContactMode::OPEN},
+                                                       {"impact", ContactMode::IMPACT},
+                                                       {"sliding", ContactMode::SLIDING},
+                                                       {"sticking", ContactMode::STICKING}};
+  Eigen::Vector3d place = scale.legend;
+  char length[64];
+  std::snprintf(length, sizeof length, "arrow of %.2g m: %.3g N", WEIGHT_ARROW * scale.size,
+                WEIGHT_ARROW * scale.size / scale.force);
+  message.markers.push_back(makeText("legend", 0, length, place, scale, stamp));
+  for (size_t i = 0; i < 4; ++i)
+  {
+    place.z() += 1.5 * LETTERS * scale.size;
+    message.markers.push_back(makeText("legend", i + 1, LINES[i].first, place, scale, stamp));
+    message.markers.back().color = colorOf(LINES[i].second, 1.0);
+  }
+}
+
+/** @brief Whether any coordinate moves the link: the mass of a fixed base weighs on nobody's contacts. */
+bool moves(const MultibodyModel& model, size_t link)
+{
+  return model.link_dof[link] >= 0;
+}
+
+}  // namespace
+
+MarkerScale markerScale(const Simulator& simulator, double force_scale)
+{
+  MarkerScale scale;
+  double size = 0.0;
+  double mass = 0.0;
+  Eigen::AlignedBox3d all;
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    const MultibodyModel& model = simulator.model(body);
+    Eigen::AlignedBox3d box;
+    for (size_t link = 0; link < model.links.size(); ++link)
+      if (moves(model, link))
+      {
+        mass += model.links[link].inertia.mass;
+        const Eigen::Vector3d center = simulator.data(body).link_pose[link].translation();
+        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(simulator.workspace(body).model.extents[link]);
+        box.extend(Eigen::AlignedBox3d(center - reach, center + reach));
+      }
+    if (!box.isEmpty())
+      size = std::max(size, box.sizes().maxCoeff());
+    all.extend(box);
+  }
+  if (size > 0.0)
+    scale.size = size;
+  const double weight = mass * simulator.scenario().gravity.norm();
+  if (force_scale > 0.0)
+    scale.force = force_scale;
+  else if (weight > 0.0)
+    scale.force = WEIGHT_ARROW * scale.size / weight;
+  if (!all.isEmpty())
+    scale.legend =
+        Eigen::Vector3d(all.center().x(), all.max().y() + 0.3 * scale.size, all.max().z() + 0.2 * scale.size);
+  return scale;
+}
+
+MarkerCounts appendContactMarkers(const Simulator& simulator, const ros::Time& stamp, const MarkerScale& scale,
+                                  const MarkerCounts& previous, visualization_msgs::MarkerArray& message)
 {
   const std::vector<ContactState>& contacts = simulator.contacts();
-  const size_t arrows = contacts.size();
-  message.markers.resize(std::max(arrows, previous_arrows) + 1);
-  visualization_msgs::Marker& cones = message.markers.back();
-  cones.ns = "cone";
-  cones.type = visualization_msgs::Marker::TRIANGLE_LIST;
-  cones.pose.orientation.w = 1.0;
+  const double dt = impulseTime(simulator);
+  Marker cones = makeMarker("cone", 0, Marker::TRIANGLE_LIST, stamp);
   cones.scale.x = cones.scale.y = cones.scale.z = 1.0;
   cones.color = makeColor(1.0, 1.0, 1.0, 1.0);
-  cones.points.clear();
-  cones.colors.clear();
-  for (size_t i = 0; i + 1 < message.markers.size(); ++i)
+  MarkerCounts counts;
+  for (const ContactState& contact : contacts)
   {
-    visualization_msgs::Marker& arrow = message.markers[i];
-    arrow.ns = "force";
-    arrow.colors.clear();  // the marker may have been the cones' one
-    arrow.id = static_cast<int>(i);
-    if (i < arrows)
-    {
-      fillArrow(contacts[i], force_scale, impulseTime(simulator), arrow);
-      appendCone(contacts[i], cones);
-    }
-    else
-    {
-      arrow.action = visualization_msgs::Marker::DELETE;
-    }
+    const Eigen::Vector3d arrow = arrowOf(contact.impulse / dt, scale);
+    if (!arrow.isZero(0.0))
+      message.markers.push_back(makeArrow(contact, counts.arrows++, arrow, scale, stamp));
+    appendCone(contact, scale, cones);
   }
-  cones.id = 0;
-  cones.action = cones.points.empty() ? visualization_msgs::Marker::DELETE : visualization_msgs::Marker::ADD;
-  for (visualization_msgs::Marker& marker : message.markers)
-  {
-    marker.header.frame_id = WORLD_FRAME;
-    marker.header.stamp = stamp;
-  }
-  return arrows;
+  appendDeleted("force", counts.arrows, previous.arrows, stamp, message);
+  if (cones.points.empty())
+    cones.action = Marker::DELETE;
+  message.markers.push_back(cones);
+  counts.values = appendValues(contacts, dt, scale, stamp, message);
+  appendDeleted("value", counts.values, previous.values, stamp, message);
+  appendLegend(scale, stamp, message);
+  return counts;
 }
 
 }  // namespace frictional_contact_sim

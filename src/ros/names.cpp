@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/ros/names.h"
 
+#include <cctype>
 #include <map>
 
 namespace frictional_contact_sim
@@ -12,19 +13,12 @@ std::string qualified(const std::string& body_name, const std::string& name)
 }
 
 /** @brief How often each URDF name occurs, joints or links of all bodies. */
-std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
+std::map<std::string, int> countNames(const Simulator& simulator, const std::string Frame::*name)
 {
   std::map<std::string, int> count;
   for (int body = 0; body < simulator.bodyCount(); ++body)
-  {
-    const MultibodyModel& model = simulator.model(body);
-    if (joints)
-      for (const Joint& joint : model.joints)
-        ++count[joint.name];
-    else
-      for (const Frame& frame : model.frames)
-        ++count[frame.name];
-  }
+    for (const Frame& frame : simulator.model(body).frames)
+      ++count[frame.*name];
   return count;
 }
 
@@ -52,24 +46,37 @@ void addJoints(const Simulator& simulator, int body, const std::map<std::string,
 NameTable makeNameTable(const Simulator& simulator)
 {
   NameTable table;
-  const std::map<std::string, int> joint_count = countNames(simulator, true);
-  const std::map<std::string, int> link_count = countNames(simulator, false);
+  const std::map<std::string, int> joint_count = countNames(simulator, &Frame::joint);
+  const std::map<std::string, int> link_count = countNames(simulator, &Frame::name);
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     const MultibodyModel& model = simulator.model(body);
     table.bodies.push_back(simulator.bodyName(body));
     addJoints(simulator, body, joint_count, table);
     std::vector<std::string> frames;
+    std::vector<std::string> frame_joints;
+    const auto unique = [&](const std::map<std::string, int>& count, const std::string& name)
+    { return name.empty() || count.at(name) == 1 ? name : qualified(simulator.bodyName(body), name); };
     for (const Frame& frame : model.frames)
     {
-      const bool unique = link_count.at(frame.name) == 1;
-      frames.push_back(unique ? frame.name : qualified(simulator.bodyName(body), frame.name));
+      frames.push_back(unique(link_count, frame.name));
+      frame_joints.push_back(unique(joint_count, frame.joint));
     }
     const int root = model.findFrame(model.links.front().name);
     table.roots.push_back(root >= 0 ? frames[root] : model.links.front().name);
     table.frames.push_back(frames);
+    table.frame_joints.push_back(frame_joints);
   }
   return table;
+}
+
+std::string topicName(const std::string& urdf_name)
+{
+  std::string name = urdf_name;
+  for (char& letter : name)
+    if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '/')
+      letter = '_';
+  return name;
 }
 
 int findJoint(const NameTable& table, const std::string& name)

@@ -42,9 +42,10 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"clock_rate", "0", "of /clock [1/s simulated]; 0 = every step"},
       {"tf_rate", "100", "of /tf [1/s simulated]; 0 = every step"},
       {"marker_rate", "30", "of ~markers [1/s simulated]; 0 = every step"},
-      {"publish_base_tf", "true", "transforms of floating bases on /tf"},
+      {"publish_base_tf", "true", "transforms of the root links, on /tf or, of fixed ones, on /tf_static"},
+      {"publish_link_tf", "false", "transforms of all other links too, where no robot_state_publisher runs"},
       {"publish_clock", "true", "false where another node publishes /clock"},
-      {"force_scale", "0", "length of force arrows [m/N]; 0 = half a metre for the weight of all bodies"},
+      {"force_scale", "0", "length of force arrows [m/N]; 0 = half the largest body's size for the weight"},
       {"start_paused", "false", "the first step waits for ~unpause or ~step"},
       {"wait_for_subscribers", "[]", "topics that must have a subscriber before the first step"},
       {"lossless_topics", "[]",
@@ -60,7 +61,7 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"dump_dir", "", "folder for FCLib files of failed steps"},
       {"max_dumps", "20", "at most so many files a run"},
       {"bag", "", "file that a recorder will write: its folder is checked at the start"},
-      {"seed", "0", "of methods with random numbers (there is none yet)"},
+      {"seed", "0", "of the noise of sensors, beside their own"},
   };
   return HELP;
 }

@@ -101,6 +101,7 @@ ConfigKeys nodeKeys(NodeParameters& parameters)
               "lossless_topics", [&](const ConfigNode& node) { parameters.lossless_topics = node.texts(); }),
           key("hold_limit", parameters.hold_limit, notNegative()),
           key("publish_base_tf", parameters.publish_base_tf),
+          key("publish_link_tf", parameters.publish_link_tf),
           key("publish_clock", parameters.publish_clock),
           key("seed", parameters.seed, 0)};
 }

@@ -72,6 +72,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , frames_(simulator_, names_, true)
   , wrenches_(private_node, names_, simulator_)
   , pacer_(parameters.real_time_factor)
+  , diagnostics_(node, private_node, [this] { return runState(); })
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , services_(private_node)
   , paused_(parameters.start_paused)
@@ -101,6 +102,12 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
   if (judge("impact at the start") == Outcome::FAILED)
     outcome_ = Outcome::FAILED;
+}
+
+RunState SimulatorNode::runState() const
+{
+  return {paused_ || waiting_, parameters_.real_time_factor, pacer_.realTimeFactor(),
+          simulator_.scenario().stopping.tolerance, delivery_.dropped()};
 }
 
 /** @brief ~servo_gains for the servos that hold the initial position. */
@@ -170,6 +177,7 @@ void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
   publisher_.restartStamps();
+  publisher_.publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
   if (paused_)
     publisher_.publishState();
   pacer_.restart(simulator_.time(), wallSeconds());
@@ -255,9 +263,11 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 /** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
-  simulator_.step();
+  const double start = wallSeconds();
+  const bool taken = simulator_.step().taken;
   summary_.add(simulator_.report(), simulator_.outcome());
-  if (!simulator_.outcome().taken)
+  diagnostics_.addStep(simulator_.report(), simulator_.outcome().converged(), wallSeconds() - start);
+  if (!taken)
   {
     publisher_.publishReport(pacer_.realTimeFactor());
     return judge("step " + std::to_string(simulator_.report().step));
@@ -283,6 +293,7 @@ void SimulatorNode::hold(const std::function<void()>& pass)
   const double start = wallSeconds();
   while (going() && delivery_.lagging(wallSeconds() - start))
     pass();
+  diagnostics_.addHold(wallSeconds() - start);
 }
 
 bool SimulatorNode::subscribersStand()

@@ -27,26 +27,6 @@ bool listened(const ros::Publisher& publisher)
 
 }  // namespace
 
-StepDivider::StepDivider(double rate, double time_step) : rate_(rate)
-{
-  setTimeStep(time_step);
-}
-
-void StepDivider::setTimeStep(double time_step)
-{
-  if (rate_ > 0.0)
-  {
-    // No run has so many steps; and beyond 2^63 llround has no answer.
-    constexpr double NEVER = 1e18;
-    steps_ = static_cast<std::uint64_t>(std::max(1LL, std::llround(std::min(NEVER, 1.0 / (rate_ * time_step)))));
-  }
-}
-
-bool StepDivider::due(std::uint64_t step) const
-{
-  return step % steps_ == 0;
-}
-
 /** @param fill the message of the present state, for those who subscribe while nothing moves */
 template <typename Message>
 ros::Publisher StepPublisher::advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
@@ -69,9 +49,10 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , clock_divider_(parameters.clock_rate, simulator.scenario().time_step)
   , tf_divider_(parameters.tf_rate, simulator.scenario().time_step)
   , marker_divider_(parameters.marker_rate, simulator.scenario().time_step)
-  , publish_base_tf_(parameters.publish_base_tf)
   , publish_clock_(parameters.publish_clock)
-  , force_scale_(parameters.force_scale > 0.0 ? parameters.force_scale : defaultForceScale(simulator))
+  , marker_scale_(markerScale(simulator, parameters.force_scale))
+  , body_markers_(simulator)
+  , forces_(simulator)
 {
   joint_states_publisher_ = advertise(node, "joint_states", DATA_QUEUE, &StepPublisher::jointStates);
   contacts_publisher_ = advertise(private_node, "contacts", DATA_QUEUE, &StepPublisher::contacts);
@@ -85,6 +66,13 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   if (publish_clock_)
     clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", LATEST_QUEUE);
   tf_publisher_ = advertise(node, "/tf", TRANSFORM_QUEUE, &StepPublisher::transforms);
+  tf_.emplace(simulator, names, TransformChoice{parameters.publish_base_tf, parameters.publish_link_tf});
+  sensors_.emplace(node, private_node, simulator, names, forces_, parameters.seed);
+  for (const ros::Publisher& publisher : sensors_->publishers())
+    data_topics_.insert(publisher.getTopic());
+  links_.emplace(private_node, simulator, names, forces_);
+  data_topics_.merge(links_->topics());
+  publishStaticTransforms();
 }
 
 void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body)
@@ -103,6 +91,7 @@ void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body)
 void StepPublisher::greetSubscribers(bool on)
 {
   greeting_ = on;
+  links_->greetSubscribers(on);
 }
 
 const std::set<std::string>& StepPublisher::dataTopics() const
@@ -114,10 +103,12 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 {
   std::string known;
   for (const std::string& topic : data_topics_)
-    known += (known.empty() ? "" : ", ") + topic;
+    if (links_->subscribers(topic) < 0)
+      known += topic + ", ";
   for (const std::string& topic : resolved_names)
     if (data_topics_.count(topic) == 0)
-      throw ParameterError("~lossless_topics: found '" + topic + "', expected topics of every step: " + known);
+      throw ParameterError("~lossless_topics: found '" + topic + "', expected topics of every step: " + known +
+                           "or one of a link or joint");
   return {resolved_names.begin(), resolved_names.end()};
 }
 
@@ -129,6 +120,8 @@ std::uint32_t StepPublisher::subscribers(const std::string& topic) const
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)
     publishers.push_back(&publisher);
+  for (const ros::Publisher& publisher : sensors_->publishers())
+    publishers.push_back(&publisher);
   std::string known;
   for (const ros::Publisher* publisher : publishers)
   {
@@ -136,7 +129,10 @@ std::uint32_t StepPublisher::subscribers(const std::string& topic) const
       return publisher->getNumSubscribers();
     known += (known.empty() ? "" : ", ") + publisher->getTopic();
   }
-  throw ParameterError("~wait_for_subscribers: found '" + topic + "', expected topics of this node: " + known);
+  if (const int listeners = links_->subscribers(topic); listeners >= 0)
+    return static_cast<std::uint32_t>(listeners);
+  throw ParameterError("~wait_for_subscribers: found '" + topic + "', expected topics of this node: " + known +
+                       " or one of a link or joint");
 }
 
 StepReport StepPublisher::report(double real_time_factor) const
@@ -184,22 +180,26 @@ const nav_msgs::Odometry& StepPublisher::odometry(int body)
 
 const tf2_msgs::TFMessage& StepPublisher::transforms()
 {
-  transforms_.transforms.clear();
-  for (int body = 0; publish_base_tf_ && body < simulator_.bodyCount(); ++body)
-  {
-    if (names_.roots[body] != WORLD_FRAME)
-    {
-      transforms_.transforms.emplace_back();
-      fillTransform(simulator_, names_, body, stamp_, transforms_.transforms.back());
-    }
-  }
+  transforms_.transforms = tf_->moving(stamp_);
   return transforms_;
+}
+
+void StepPublisher::publishStaticTransforms()
+{
+  tf_->sendStatic(stamp_, sensors_->transforms());
+}
+
+MarkerCounts StepPublisher::fillMarkers(const MarkerCounts& previous)
+{
+  markers_.markers.clear();
+  body_markers_.append(stamp_, marker_scale_.size, markers_);
+  return appendContactMarkers(simulator_, stamp_, marker_scale_, previous, markers_);
 }
 
 /** @brief For one who has no arrows yet; what the others have still counts for the next message. */
 const visualization_msgs::MarkerArray& StepPublisher::allMarkers()
 {
-  fillMarkers(simulator_, stamp_, force_scale_, 0, markers_);
+  fillMarkers(MarkerCounts());
   return markers_;
 }
 
@@ -221,8 +221,8 @@ void StepPublisher::publishOdometry()
 void StepPublisher::publishTransforms()
 {
   transforms_stamp_ = stamp_;
-  if (publish_base_tf_ && listened(tf_publisher_) && !transforms().transforms.empty())
-    tf_publisher_.publish(transforms_);
+  if (listened(tf_publisher_))
+    tf_->send(stamp_);
 }
 
 void StepPublisher::publishMarkers()
@@ -230,7 +230,7 @@ void StepPublisher::publishMarkers()
   markers_stamp_ = stamp_;
   if (listened(markers_publisher_))
   {
-    arrows_ = fillMarkers(simulator_, stamp_, force_scale_, arrows_, markers_);
+    marker_counts_ = fillMarkers(marker_counts_);
     markers_publisher_.publish(markers_);
   }
 }
@@ -239,14 +239,17 @@ void StepPublisher::publish(double real_time_factor)
 {
   const std::uint64_t step = simulator_.report().step;
   stamp_ = std::max(ros::TIME_MIN, toStamp(simulator_.time()));
+  forces_.restart();
   if (clock_divider_.due(step))
     publishClock();
   if (state_divider_.due(step))
   {
     publishJointsAndContacts();
+    links_->publish(stamp_);
     publishReport(real_time_factor);
     publishOdometry();
   }
+  sensors_->publish(stamp_);
   if (tf_divider_.due(step))
     publishTransforms();
   if (marker_divider_.due(step))
@@ -264,9 +267,12 @@ void StepPublisher::publishRest()
 void StepPublisher::publishState()
 {
   stamp_ = std::max(stamp_ + ros::Duration(0, 1), toStamp(simulator_.time()));
+  forces_.restart();
   publishJointsAndContacts();
+  links_->publish(stamp_);
   publishOdometry();
   publishTransforms();
+  publishStaticTransforms();
   publishMarkers();
 }
 
@@ -274,6 +280,7 @@ void StepPublisher::setTimeStep(double time_step)
 {
   for (StepDivider* divider : {&state_divider_, &clock_divider_, &tf_divider_, &marker_divider_})
     divider->setTimeStep(time_step);
+  sensors_->setTimeStep(time_step);
 }
 
 void StepPublisher::restartStamps()

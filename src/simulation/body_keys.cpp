@@ -3,6 +3,7 @@
 
 #include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
+#include "sensor_keys.h"
 
 namespace frictional_contact_sim
 {
@@ -21,7 +22,8 @@ constexpr CommandKey COMMAND_KEYS[] = {{"effort", "efforts", Mode::EFFORT},
                                        {"position", "positions", Mode::POSITION},
                                        {"velocity", "velocities", Mode::VELOCITY}};
 
-/** {xyz, rpy} or [x, y, z, roll, pitch, yaw]; URDF's convention: about fixed axes. */
+}  // namespace
+
 Eigen::Isometry3d readPose(const ConfigNode& node)
 {
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
@@ -45,6 +47,8 @@ Eigen::Isometry3d readPose(const ConfigNode& node)
   return pose;
 }
 
+namespace
+{
 /** times: [...] beside the targets: as many, increasing. */
 void checkTimes(const ConfigNode& node, const char* targets, const CommandSchedule& schedule)
 {
@@ -179,6 +183,8 @@ ConfigKeys bodyKeys(BodySpec& body)
           "motion", [&body](const ConfigNode& node) { readMotion(node, body); }),
       key(
           "material", [&body](const ConfigNode& node) { body.material = node.text(); }),
+      key(
+          "sensors", [&body](const ConfigNode& node) { body.sensors = readSensors(node); }),
       key("self_collision", body.self_collision),
       key(
           "min_joint_inertia", [&body](const ConfigNode& node) { body.min_joint_inertia = node.number(positive()); }),

@@ -241,6 +241,11 @@ const MultibodyData& Simulator::data(int body) const
   return impl_->bodies[body].end;
 }
 
+const Body& Simulator::workspace(int body) const
+{
+  return impl_->bodies[body];
+}
+
 Eigen::VectorXd& Simulator::position(int body)
 {
   return impl_->state.bodies[body].q;

@@ -208,6 +208,7 @@ void warnOfDeadDrives(const BodyModel& model, std::vector<std::string>& warnings
 
 void setWrenches(const BodySpec& spec, const Draft& body)
 {
+  checkSensors(body.model.tree, spec.sensors);
   for (ExternalWrench wrench : spec.wrenches)
   {
     wrench.frame = body.model.tree.findFrame(wrench.link);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "frictional_contact_sim/ros/command.h"
-#include "frictional_contact_sim/ros/markers.h"
 
 namespace frictional_contact_sim
 {
@@ -224,24 +223,41 @@ TEST(CommandTest, AServosEffortLimitDoesNotCutACommandedEffort)
   EXPECT_EQ(effortAfter(effortCommand(0.25)), 0.25);
 }
 
-TEST(MarkersTest, ArrowsOfContactsThatAreGoneAreDeleted)
+TEST(LinkContactsTest, TheLinkIsSideAOfEach)
 {
-  Simulator simulator(boxScenario());
-  simulator.step();
-  visualization_msgs::MarkerArray message;
-  const double scale = defaultForceScale(simulator);
-  EXPECT_NEAR(scale * 98.1, 0.5, 1e-15);  // half a metre for the weight
-  const size_t arrows = fillMarkers(simulator, ros::Time(0, 1), scale, 6, message);
-  ASSERT_EQ(arrows, simulator.contacts().size());
-  ASSERT_EQ(message.markers.size(), 7u);
-  for (size_t i = 0; i < 6; ++i)
+  // Two boxes, one on the other: what the lower one carries is on it, what carries it too.
+  Scenario scenario = boxScenario();
+  scenario.bodies.push_back(makeBody("upper", "/test/ros/box_10kg.urdf", 0.0));
+  scenario.bodies[1].pose->translation().z() = 0.3;
+  Simulator simulator(scenario);
+  for (int k = 0; k < 300; ++k)
+    simulator.step();
+  const NameTable names = makeNameTable(simulator);
+  const auto lift = [&](int body)
   {
-    EXPECT_EQ(message.markers[i].action,
-              i < arrows ? visualization_msgs::Marker::ADD : visualization_msgs::Marker::DELETE);
-  }
-  const visualization_msgs::Marker& arrow = message.markers.front();
-  const ContactState& contact = simulator.contacts().front();
-  EXPECT_NEAR(arrow.points[1].z - arrow.points[0].z, scale * contact.impulse.z() / 0.001, 1e-14);
+    ContactArray message;
+    message.contacts.resize(50);  // of some other step
+    fillLinkContacts(simulator, names, body, 0, ros::Time(0, 1), message);
+    double sum = 0.0;
+    for (const Contact& contact : message.contacts)
+    {
+      EXPECT_EQ(names.bodies[body], contact.body_a);
+      EXPECT_GT(contact.force.z * contact.normal.z, 0.0);  // a push, towards the link
+      sum += contact.force.z;
+    }
+    return sum;
+  };
+  EXPECT_NEAR(98.1, lift(0), 1e-6);
+  EXPECT_NEAR(98.1, lift(1), 1e-6);
+}
+
+TEST(NamesTest, FixedJointsHaveNamesAndTopicsTakeAnyName)
+{
+  const Simulator simulator(twinScenario());
+  const NameTable names = makeNameTable(simulator);
+  EXPECT_EQ("", names.frame_joints[0][0]);
+  EXPECT_EQ("right/" + simulator.model(1).frames[1].joint, names.frame_joints[1][1]);
+  EXPECT_EQ("left_foot_1/sole", topicName("left foot-1/sole"));
 }
 
 }  // namespace

@@ -32,6 +32,14 @@ void solveMassMatrix(const MultibodyModel& model, const MultibodyData& data, Vec
 void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eigen::Vector3d& gravity,
                        MultibodyData& data, VectorOut bias);
 
+/**
+ * @brief data.link_velocity and data.link_acceleration at v and its rate (nv), without gravity: spatial accelerations,
+ * whose linear part is that of the link-fixed point at `reference` less angular velocity x its velocity.
+ * Needs forwardKinematics.
+ */
+void computeLinkAccelerations(const MultibodyModel& model, const VectorIn& v, const VectorIn& rate,
+                              MultibodyData& data);
+
 /** @brief Adds J^T (force; torque) of a wrench at a link-fixed point to tau (nv). World axes, [N], [N m]. */
 void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau);

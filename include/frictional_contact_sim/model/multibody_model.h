@@ -97,9 +97,18 @@ struct Link
 /** @brief A URDF link in the link that carries it. */
 struct Frame
 {
+  Frame() = default;
+  Frame(const std::string& link_name, int carrier, const Eigen::Isometry3d& pose)
+    : name(link_name), link(carrier), placement(pose)
+  {
+  }
+
   std::string name;
   int link = 0;
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< link frame in the link frame
+  int parent = -1;  ///< frame that its URDF joint hangs on, -1 = none; parents come before children
+  std::string joint;  ///< that joint, of any type; empty for the root
+  RigidInertia inertia;  ///< of this URDF link alone, in its own frame; those of a link sum up to the link's
 };
 
 struct CollisionShape

@@ -9,6 +9,7 @@
 #include <frictional_contact_sim/ContactArray.h>
 #include <frictional_contact_sim/StepReport.h>
 #include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/time.h>
 #include <sensor_msgs/JointState.h>
@@ -29,13 +30,19 @@ double impulseTime(const Simulator& simulator);
 void fillJointState(const Simulator& simulator, const NameTable& names, const ros::Time& stamp,
                     sensor_msgs::JointState& message);
 void fillContacts(const Simulator& simulator, const NameTable& names, const ros::Time& stamp, ContactArray& message);
+void fillPose(const Eigen::Isometry3d& pose, geometry_msgs::Pose& message);
+/** @brief Of one URDF link, which is side a of each: force and normal are on the link. */
+void fillLinkContacts(const Simulator& simulator, const NameTable& names, int body, int frame, const ros::Time& stamp,
+                      ContactArray& message);
+/** @param wrench (force; torque) in the axes of the frame [N], [N m] */
+void fillWrench(const Vector6d& wrench, const std::string& frame_id, const ros::Time& stamp,
+                geometry_msgs::WrenchStamped& message);
 /** @brief existence and uniqueness are NOT_CHECKED: a step does not prove them. */
 void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message);
 /** @brief Pose and velocity of the root link of a body. */
 void fillOdometry(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
                   nav_msgs::Odometry& message);
-/** @brief world -> root link of a body. */
-void fillTransform(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
-                   geometry_msgs::TransformStamped& message);
+void fillTransform(const Eigen::Isometry3d& pose, geometry_msgs::Transform& message);
+void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target);
 
 }  // namespace frictional_contact_sim

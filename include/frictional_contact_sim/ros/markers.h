@@ -1,8 +1,9 @@
 #pragma once
 /**
  * @file markers.h
- * @brief Contacts as rviz markers: an arrow for each force (namespace `force`), and the friction cones at the contacts
- * (namespace `cone`), coloured by mode: sticking green, sliding orange, impact blue, open grey.
+ * @brief Contacts as rviz markers, coloured by mode: sticking green, sliding orange, impact blue, open grey.
+ * Namespaces: `force` an arrow for each contact, `cone` the friction cones, `value` the force between two shapes in
+ * newtons, `legend`.
  */
 #include <ros/time.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -11,15 +12,34 @@
 
 namespace frictional_contact_sim
 {
-/** @brief Half a metre for the weight of all bodies; 0.01 m/N where there is no weight. */
-double defaultForceScale(const Simulator& simulator);
+/** @brief How large things are drawn. */
+struct MarkerScale
+{
+  double size = 1.0;  ///< of the scene: diameter of the largest body that moves [m]
+  double force = 0.01;  ///< length of arrows [m/N]
+  Eigen::Vector3d legend = Eigen::Vector3d::Zero();  ///< its place in the world [m]
+};
 
 /**
- * @param force_scale length of arrows [m/N]
- * @param previous_arrows arrows in the message before this one: those that are gone are deleted
- * @return arrows in this message
+ * @brief From the bodies as they are now.
+ * @param force_scale [m/N]; 0: half the size of the scene for the weight of what moves, 0.01 m/N where it has no weight
  */
-size_t fillMarkers(const Simulator& simulator, const ros::Time& stamp, double force_scale, size_t previous_arrows,
-                   visualization_msgs::MarkerArray& message);
+MarkerScale markerScale(const Simulator& simulator, double force_scale);
+
+/** @brief Markers of a message, of the namespaces that change in number. */
+struct MarkerCounts
+{
+  size_t arrows = 0;
+  size_t values = 0;
+};
+
+/**
+ * @brief Adds the markers of all contacts to the message, and the legend. An arrow is at least a tenth and at most one
+ * and a half of the scene's size long, whatever the force; its value says the truth.
+ * @param previous in the message before this one: those that are gone are deleted
+ * @return in this message
+ */
+MarkerCounts appendContactMarkers(const Simulator& simulator, const ros::Time& stamp, const MarkerScale& scale,
+                                  const MarkerCounts& previous, visualization_msgs::MarkerArray& message);
 
 }  // namespace frictional_contact_sim

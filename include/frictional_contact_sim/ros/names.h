@@ -28,11 +28,16 @@ struct NameTable
   std::vector<int> actuated;  ///< indices into joints: those that take commands (no mimic joints)
   std::vector<std::string> bodies;  ///< by body
   std::vector<std::vector<std::string>> frames;  ///< by body and frame of its model
+  /// By body and frame: name of its URDF joint, fixed ones too, unique as the others are; empty for a root.
+  std::vector<std::vector<std::string>> frame_joints;
   std::vector<std::string> roots;  ///< tf name of each body's root link
   std::vector<std::string> unsupported_joints;  ///< planar and floating joints: no place in sensor_msgs/JointState
 };
 
 NameTable makeNameTable(const Simulator& simulator);
+
+/** @brief A URDF name as a part of a topic: what ROS does not take there becomes `_`. */
+std::string topicName(const std::string& urdf_name);
 
 /** @return index into table.joints, -1 when unknown; `body/joint` is always understood. */
 int findJoint(const NameTable& table, const std::string& name);

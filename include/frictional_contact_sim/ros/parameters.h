@@ -46,9 +46,10 @@ struct NodeParameters
   int max_dumps = 20;  ///< at most so many files a run
   std::string bag;  ///< file that a recorder is to write: its folder is checked
   bool publish_base_tf = true;
+  bool publish_link_tf = false;  ///< of all links, where no robot_state_publisher does it
   bool publish_clock = true;  ///< false where another node publishes /clock
   std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others
-  int seed = 0;  ///< of methods with random numbers
+  int seed = 0;  ///< of the noise of sensors, beside their own
   std::vector<std::string> warnings;  ///< unknown or unused parameters, one line each
 };
 

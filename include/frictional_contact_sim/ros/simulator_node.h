@@ -15,6 +15,7 @@
 
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
+#include "frictional_contact_sim/ros/diagnostics.h"
 #include "frictional_contact_sim/ros/frames.h"
 #include "frictional_contact_sim/ros/pacer.h"
 #include "frictional_contact_sim/ros/reconfiguration.h"
@@ -48,6 +49,7 @@ private:
   void advertiseServices();
   void advertiseRequests();
   void setServoGains();
+  RunState runState() const;
 
   Outcome advance();
   Outcome judge(const std::string& where);
@@ -75,6 +77,7 @@ private:
   StateSlot saved_state_;
   std::unique_ptr<Reconfiguration> reconfiguration_;
   Pacer pacer_;
+  DiagnosticsPublisher diagnostics_;
   RunSummary summary_;
   Throttle failure_lines_;
   int dumps_ = 0;

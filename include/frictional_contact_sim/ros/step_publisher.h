@@ -8,31 +8,23 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/ros/body_markers.h"
 #include "frictional_contact_sim/ros/conversions.h"
+#include "frictional_contact_sim/ros/link_publisher.h"
 #include "frictional_contact_sim/ros/markers.h"
 #include "frictional_contact_sim/ros/names.h"
 #include "frictional_contact_sim/ros/parameters.h"
+#include "frictional_contact_sim/ros/sensor_publisher.h"
+#include "frictional_contact_sim/ros/step_divider.h"
+#include "frictional_contact_sim/ros/transform_publisher.h"
 
 namespace frictional_contact_sim
 {
-/** @brief Every how many steps a topic is due. */
-class StepDivider
-{
-public:
-  /** @param rate per simulated second; 0 = every step. Rounded to a whole number of steps. */
-  StepDivider(double rate, double time_step);
-  void setTimeStep(double time_step);
-  bool due(std::uint64_t step) const;
-
-private:
-  double rate_ = 0.0;
-  std::uint64_t steps_ = 1;
-};
-
 class StepPublisher
 {
 public:
@@ -75,7 +67,9 @@ private:
   const ContactArray& contacts();
   const nav_msgs::Odometry& odometry(int body);
   const tf2_msgs::TFMessage& transforms();
+  void publishStaticTransforms();
   const visualization_msgs::MarkerArray& allMarkers();
+  MarkerCounts fillMarkers(const MarkerCounts& previous);
   void publishJointsAndContacts();
   void publishOdometry();
   void publishTransforms();
@@ -87,15 +81,16 @@ private:
   StepDivider clock_divider_;
   StepDivider tf_divider_;
   StepDivider marker_divider_;
-  bool publish_base_tf_;
   bool publish_clock_;
-  double force_scale_;
-  size_t arrows_ = 0;
+  MarkerScale marker_scale_;
+  MarkerCounts marker_counts_;
+  BodyMarkers body_markers_;
   std::set<std::string> data_topics_;
   ros::Time stamp_ = ros::TIME_MIN;  ///< of the present state; zero would mean "no clock yet"
   ros::Time transforms_stamp_;  ///< of the state that was shown last
   ros::Time markers_stamp_;
   bool greeting_ = false;
+  LinkForces forces_;
 
   ros::Publisher joint_states_publisher_;
   ros::Publisher contacts_publisher_;
@@ -104,6 +99,9 @@ private:
   ros::Publisher markers_publisher_;
   ros::Publisher clock_publisher_;
   ros::Publisher tf_publisher_;
+  std::optional<TransformPublisher> tf_;
+  std::optional<SensorPublisher> sensors_;
+  std::optional<LinkPublisher> links_;  ///< last: roscpp finds a topic by a search from the first one
 
   // Kept from step to step for their storage.
   sensor_msgs::JointState joint_states_;

@@ -20,6 +20,7 @@
 #include "frictional_contact_sim/dynamics/material.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/simulation/failure.h"
+#include "frictional_contact_sim/simulation/sensor.h"
 #include "frictional_contact_sim/solver/solver.h"
 #include "frictional_contact_sim/solver/solver_options.h"
 
@@ -48,6 +49,7 @@ struct BodySpec
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion;  ///< fixed base: linear, angular velocity
   std::string material = "default";
   std::map<std::string, std::string> link_materials;  ///< by link, where it is not `material`
+  std::vector<SensorSpec> sensors;
   bool self_collision = true;  ///< false: no two of its links collide
   std::vector<std::pair<std::string, std::string>> disable_collisions;  ///< pairs of links
   std::optional<double> min_joint_inertia;  ///< see loadUrdf [kg m^2] or [kg] > 0

@@ -26,6 +26,9 @@ ConfigKey restitutionKey(const std::string& name, double& restitution);
 ConfigKey poseKey(const std::string& name, BodySpec& body);
 ConfigKey linkMaterialsKey(const std::string& name, BodySpec& body);
 
+/** @brief {xyz, rpy} or [x, y, z, roll, pitch, yaw]; URDF's convention: about fixed axes. @throws ConfigError */
+Eigen::Isometry3d readPose(const ConfigNode& node);
+
 /** @brief Path of the file that a value names, relative to the document's folder. @throws ConfigError */
 std::string resolveFile(const ConfigNode& node);
 

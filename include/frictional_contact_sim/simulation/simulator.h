@@ -89,6 +89,7 @@ public:
   const std::string& bodyName(int body) const;
   const MultibodyModel& model(int body) const;
   const MultibodyData& data(int body) const;  ///< poses and velocities at the end of the step
+  const Body& workspace(int body) const;  ///< of the last step: its midpoint, the velocity it started from
   Eigen::VectorXd& position(int body);  ///< nq; call stateChanged() after writing
   const Eigen::VectorXd& position(int body) const;
   const Eigen::VectorXd& velocity(int body) const;  ///< nv

@@ -1,0 +1,166 @@
+#include "frictional_contact_sim/ros/body_markers.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "frictional_contact_sim/model/model_error.h"
+#include "frictional_contact_sim/model/urdf_loader.h"
+#include "frictional_contact_sim/model/visual_shapes.h"
+#include "frictional_contact_sim/ros/conversions.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+using visualization_msgs::Marker;
+
+constexpr float OPACITY = 0.55F;  ///< of bodies: arrows inside them are seen
+constexpr double GROUND_SIZE = 20.0;  ///< edge, in sizes of the scene
+constexpr double GROUND_THICKNESS = 0.01;  ///< in sizes of the scene
+
+std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
+{
+  std_msgs::ColorRGBA color;
+  color.r = static_cast<float>(red);
+  color.g = static_cast<float>(green);
+  color.b = static_cast<float>(blue);
+  color.a = static_cast<float>(opacity);
+  return color;
+}
+
+/** Of bodies without colours: calm ones, away from those of the modes. */
+std_msgs::ColorRGBA paletteColor(int body)
+{
+  constexpr double COLORS[][3] = {{0.55, 0.60, 0.70}, {0.75, 0.65, 0.50}, {0.60, 0.50, 0.70}, {0.50, 0.70, 0.70},
+                                  {0.75, 0.55, 0.60}, {0.70, 0.70, 0.45}, {0.45, 0.55, 0.55}, {0.65, 0.65, 0.65}};
+  constexpr int COUNT = sizeof COLORS / sizeof COLORS[0];
+  const double* rgb = COLORS[body % COUNT];
+  return makeColor(rgb[0], rgb[1], rgb[2], OPACITY);
+}
+
+std::string fileText(const std::string& path)
+{
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+bool fileExists(const std::string& uri)
+{
+  try
+  {
+    return std::filesystem::exists(resolvePath(uri, "."));
+  }
+  catch (const ModelError&)
+  {
+    return false;
+  }
+}
+}  // namespace
+
+BodyMarkers::BodyMarkers(const Simulator& simulator) : simulator_(simulator)
+{
+}
+
+void BodyMarkers::addMarker(int body, int link, int type, const Eigen::Vector3d& scale,
+                            const Eigen::Isometry3d& placement, const std_msgs::ColorRGBA& color)
+{
+  Marker marker;
+  marker.header.frame_id = WORLD_FRAME;
+  marker.ns = "bodies";
+  marker.id = static_cast<int>(markers_.size());
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.scale.x = scale.x();
+  marker.scale.y = scale.y();
+  marker.scale.z = scale.z();
+  marker.color = color;
+  markers_.push_back(marker);
+  shapes_.push_back({body, link, placement});
+}
+
+void BodyMarkers::add(int body, int link, const Geometry& geometry, const Eigen::Isometry3d& placement,
+                      const std_msgs::ColorRGBA& color)
+{
+  const auto at = [&](int type, const Eigen::Vector3d& scale, double z = 0.0)
+  { addMarker(body, link, type, scale, placement * Eigen::Translation3d(0.0, 0.0, z), color); };
+  if (const auto* sphere = std::get_if<Sphere>(&geometry))
+    at(Marker::SPHERE, Eigen::Vector3d::Constant(2.0 * sphere->radius));
+  else if (const auto* box = std::get_if<Box>(&geometry))
+    at(Marker::CUBE, 2.0 * box->half_size);
+  else if (const auto* cylinder = std::get_if<Cylinder>(&geometry))
+    at(Marker::CYLINDER, 2.0 * Eigen::Vector3d(cylinder->radius, cylinder->radius, cylinder->half_length));
+  else if (const auto* capsule = std::get_if<Capsule>(&geometry))
+  {
+    const double diameter = 2.0 * capsule->radius;
+    if (capsule->half_length > 0.0)
+      at(Marker::CYLINDER, Eigen::Vector3d(diameter, diameter, 2.0 * capsule->half_length));
+    at(Marker::SPHERE, Eigen::Vector3d::Constant(diameter), capsule->half_length);
+    at(Marker::SPHERE, Eigen::Vector3d::Constant(diameter), -capsule->half_length);
+  }
+  else if (const auto* mesh = std::get_if<Mesh>(&geometry))
+  {
+    at(Marker::MESH_RESOURCE, mesh->scale);
+    markers_.back().mesh_resource = mesh->path.front() == '/' ? "file://" + mesh->path : mesh->path;
+  }
+}
+
+void BodyMarkers::loadBody(int body)
+{
+  const MultibodyModel& model = simulator_.model(body);
+  const BodySpec& spec = simulator_.scenario().bodies[body];
+  const std::string xml = spec.urdf_xml.empty() ? fileText(spec.urdf_path) : spec.urdf_xml;
+  std::error_code ignored;
+  const std::string folder = (std::filesystem::current_path(ignored) / spec.urdf_path).parent_path().string();
+  std::set<int> drawn;  // frames
+  for (const VisualShape& shape : readVisualShapes(xml, folder))
+  {
+    const int frame = model.findFrame(shape.link);
+    const auto* mesh = std::get_if<Mesh>(&shape.geometry);
+    if (frame < 0 || (mesh != nullptr && !fileExists(mesh->path)))
+      continue;
+    std_msgs::ColorRGBA color = paletteColor(body);
+    if (shape.color)
+      color = makeColor((*shape.color)[0], (*shape.color)[1], (*shape.color)[2],
+                        std::min<double>(OPACITY, (*shape.color)[3]));
+    add(body, model.frames[frame].link, shape.geometry, model.frames[frame].placement * shape.placement, color);
+    drawn.insert(frame);
+  }
+  for (const CollisionShape& shape : model.shapes)
+    if (drawn.count(shape.frame) == 0)
+      add(body, shape.link, shape.geometry, shape.placement, paletteColor(body));
+}
+
+void BodyMarkers::load(double size)
+{
+  if (const std::optional<GroundSpec>& ground = simulator_.scenario().ground)
+  {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().z() = ground->height - 0.5 * GROUND_THICKNESS * size;
+    addMarker(-1, -1, Marker::CUBE, size * Eigen::Vector3d(GROUND_SIZE, GROUND_SIZE, GROUND_THICKNESS), pose,
+              makeColor(0.82, 0.82, 0.80, 1.0));
+  }
+  for (int body = 0; body < simulator_.bodyCount(); ++body)
+    loadBody(body);
+}
+
+void BodyMarkers::append(const ros::Time& stamp, double size, visualization_msgs::MarkerArray& message)
+{
+  if (!loaded_)
+    load(size);
+  loaded_ = true;
+  for (size_t i = 0; i < markers_.size(); ++i)
+  {
+    const Shape& shape = shapes_[i];
+    const Eigen::Isometry3d pose =
+        shape.body < 0 ? shape.placement : simulator_.data(shape.body).link_pose[shape.link] * shape.placement;
+    fillPose(pose, markers_[i].pose);
+    markers_[i].header.stamp = stamp;
+  }
+  message.markers.insert(message.markers.end(), markers_.begin(), markers_.end());
+}
+
+}  // namespace frictional_contact_sim

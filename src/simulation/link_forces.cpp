@@ -1,0 +1,103 @@
+#include "frictional_contact_sim/simulation/link_forces.h"
+
+#include "frictional_contact_sim/dynamics/step_motion.h"
+#include "frictional_contact_sim/model/inverse_dynamics.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+/** Middle of the last step on the scenario's clock, to the bit of the step's own. */
+double middleOfStep(const SimulationState& state, double dt)
+{
+  StepClock clock = state.scenario_clock;
+  clock.steps -= clock.steps > 0 ? 1 : 0;
+  return clock.time(state.dt) + 0.5 * dt;
+}
+}  // namespace
+
+LinkForces::LinkForces(const Simulator& simulator) : simulator_(simulator)
+{
+  bodies_.reserve(simulator.bodyCount());
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+    bodies_.emplace_back(simulator.model(body));
+}
+
+void LinkForces::restart()
+{
+  ++state_;
+}
+
+bool LinkForces::hasStep() const
+{
+  return simulator_.report().status != SolverStatus::NOT_RUN;
+}
+
+/** Of the step; before one, what does not move is at its place. */
+const MultibodyData& LinkForces::motion(int body)
+{
+  BodyForces& forces = bodies_[body];
+  if (!hasStep())
+    return simulator_.data(body);
+  if (forces.motion_of != state_)
+  {
+    const Body& last = simulator_.workspace(body);
+    computeStepMotion(last, simulator_.solution().v.segment(last.v_offset, last.model.tree.nv), simulator_.report().dt,
+                      forces.motion);
+    forces.motion_of = state_;
+  }
+  return forces.motion;
+}
+
+/** (force; torque about data.reference), world axes. */
+Vector6d LinkForces::contactSum(const MultibodyData& data, int body, int frame) const
+{
+  Vector6d sum = Vector6d::Zero();
+  const double dt = simulator_.report().dt;
+  for (const ContactState& contact : simulator_.contacts())
+    for (const auto& [handle, sign] : {std::pair(contact.shape_a, 1.0), std::pair(contact.shape_b, -1.0)})
+    {
+      const ShapeInfo& shape = simulator_.shape(handle);
+      if (shape.body != body || shape.frame != frame)
+        continue;
+      const Eigen::Vector3d force = sign / dt * contact.impulse;
+      sum.head<3>() += force;
+      sum.tail<3>() += (contact.position - data.reference).cross(force);
+    }
+  return sum;
+}
+
+Vector6d LinkForces::contactWrench(int body, int frame)
+{
+  const MultibodyData& data = motion(body);
+  return localWrench(data, framePose(simulator_.model(body), data, frame), contactSum(data, body, frame));
+}
+
+Vector6d LinkForces::jointWrench(int body, int frame)
+{
+  BodyForces& forces = bodies_[body];
+  const MultibodyModel& model = simulator_.model(body);
+  const MultibodyData& data = motion(body);
+  if (forces.wrenches_of != state_)
+  {
+    forces.applied.resize(model.frames.size());
+    for (size_t i = 0; i < model.frames.size(); ++i)
+      forces.applied[i] = contactSum(data, body, static_cast<int>(i));
+    addExternalWrenches(simulator_.workspace(body), data, middleOfStep(simulator_.state(), simulator_.report().dt),
+                        forces.applied);
+    computeJointWrenches(model, data, simulator_.scenario().gravity, forces.applied, forces.joint_wrenches);
+    forces.wrenches_of = state_;
+  }
+  return localWrench(data, framePose(model, data, frame), forces.joint_wrenches[frame]);
+}
+
+Eigen::Vector3d LinkForces::specificForce(int body, int frame, const Eigen::Isometry3d& placement)
+{
+  const MultibodyModel& model = simulator_.model(body);
+  const MultibodyData& data = motion(body);
+  const Eigen::Isometry3d pose = framePose(model, data, frame) * placement;
+  const Eigen::Vector3d acceleration = pointAcceleration(data, model.frames[frame].link, pose.translation());
+  return pose.linear().transpose() * (acceleration - simulator_.scenario().gravity);
+}
+
+}  // namespace frictional_contact_sim
