@@ -57,9 +57,11 @@ SurfaceGroup findSurfaces(const std::string& field, const std::string& name, con
     group = {"", name.substr(0, slash), name.substr(slash + 1)};
   else if (!name.empty())
     group.material = name;
-  const bool known = !name.empty() && (isUsed(group, world.sides) || materials.materials.count(name) > 0);
+  const bool known =
+      !name.empty() && name.back() != '/' && (isUsed(group, world.sides) || materials.materials.count(name) > 0);
   if (!known)
-    throw std::invalid_argument(field + ": found '" + name + "', " + didYouMean(name, surfaceNames(world, materials)) +
+    throw std::invalid_argument(field + ": found '" + inOneLine(name) + "', " +
+                                didYouMean(name, surfaceNames(world, materials)) +
                                 "expected a material, a body, body/link of a link that collides, or ground");
   return group;
 }

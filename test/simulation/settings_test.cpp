@@ -192,6 +192,7 @@ TEST(SettingsTest, RefusalsNameTheFieldAndChangeNothing)
       {"did you mean 'block'", [&] { simulator.setFriction("blok", "ground", 0.5); }},
       {"b: found ''", [&] { simulator.setFriction("block", "", 0.5); }},
       {"body/link", [&] { simulator.setFriction("block/nowhere", "ground", 0.5); }},
+      {"body/link", [&] { simulator.setFriction("block/", "ground", 0.5); }},
       {"default_friction", [&] { simulator.setDefaultFriction(-1.0); }},
       {"gravity y",
        [&] {

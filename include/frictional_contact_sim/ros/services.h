@@ -16,6 +16,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "frictional_contact_sim/config/nearest_name.h"
+
 namespace frictional_contact_sim
 {
 /** @brief One line: the field of a request, what was found there, what is expected. */
@@ -52,7 +54,7 @@ bool answer(const std::string& name, Response& response, const std::function<voi
   catch (const std::exception& error)
   {
     success = false;
-    reason = error.what();
+    reason = inOneLine(error.what());
     ROS_DEBUG_STREAM("~" << name << ": refused: " << reason);
   }
   if constexpr (HasSuccess<Response>::value)
