@@ -18,7 +18,6 @@ using visualization_msgs::Marker;
 
 constexpr float OPACITY = 0.55F;  ///< of bodies: arrows inside them are seen
 constexpr double GROUND_SIZE = 20.0;  ///< edge, in sizes of the scene
-constexpr double GROUND_THICKNESS = 0.01;  ///< in sizes of the scene
 
 std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
 {
@@ -138,10 +137,18 @@ void BodyMarkers::load(double size)
 {
   if (const std::optional<GroundSpec>& ground = simulator_.scenario().ground)
   {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.translation().z() = ground->height - 0.5 * GROUND_THICKNESS * size;
-    addMarker(-1, -1, Marker::CUBE, size * Eigen::Vector3d(GROUND_SIZE, GROUND_SIZE, GROUND_THICKNESS), pose,
-              makeColor(0.82, 0.82, 0.80, 1.0));
+    // Two triangles: the shading of a cube that is scaled to a plate is wrong.
+    addMarker(-1, -1, Marker::TRIANGLE_LIST, Eigen::Vector3d::Ones(),
+              Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, ground->height)), makeColor(0.82, 0.82, 0.80, 1.0));
+    constexpr int CORNERS[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}};
+    for (const auto& corner : CORNERS)
+    {
+      geometry_msgs::Point point;
+      point.x = 0.5 * GROUND_SIZE * size * corner[0];
+      point.y = 0.5 * GROUND_SIZE * size * corner[1];
+      markers_.back().points.push_back(point);
+      markers_.back().colors.push_back(markers_.back().color);
+    }
   }
   for (int body = 0; body < simulator_.bodyCount(); ++body)
     loadBody(body);

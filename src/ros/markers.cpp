@@ -18,14 +18,15 @@ constexpr double CONE_OPACITY = 0.35;  // forces stay visible through it
 constexpr double PI = 3.14159265358979323846;
 
 // In sizes of the scene.
-constexpr double WEIGHT_ARROW = 0.5;
+constexpr double WEIGHT_ARROW = 1.0;
 constexpr double SHORTEST_ARROW = 0.1;
 constexpr double LONGEST_ARROW = 1.5;
-constexpr double SHAFT = 0.015;
-constexpr double HEAD = 0.035;
-constexpr double HEAD_LENGTH = 0.06;
-constexpr double CONE_HEIGHT = 0.07;
-constexpr double LETTERS = 0.045;
+constexpr double SHAFT = 0.02;
+constexpr double HEAD = 0.045;
+constexpr double HEAD_LENGTH = 0.08;
+constexpr double CONE_HEIGHT = 0.1;
+constexpr double LETTERS = 0.06;
+constexpr double LEGEND_GAP = 0.15;  // above the bodies
 
 std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
 {
@@ -198,40 +199,67 @@ bool moves(const MultibodyModel& model, size_t link)
   return model.link_dof[link] >= 0;
 }
 
+/** @brief Of a shape in the world. @param extent farthest point of the link's shapes from its origin [m]: a mesh is no
+ * larger */
+Eigen::AlignedBox3d boundingBox(const CollisionShape& shape, const Eigen::Isometry3d& link_pose, double extent)
+{
+  const Eigen::Isometry3d pose = link_pose * shape.placement;
+  const Eigen::Matrix3d axes = pose.linear().cwiseAbs();
+  Eigen::Vector3d center = pose.translation();
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();
+  if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
+    half.setConstant(sphere->radius);
+  else if (const auto* box = std::get_if<Box>(&shape.geometry))
+    half = axes * box->half_size;
+  else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry))
+    half = axes * Eigen::Vector3d(cylinder->radius, cylinder->radius, cylinder->half_length);
+  else if (const auto* capsule = std::get_if<Capsule>(&shape.geometry))
+    half = capsule->half_length * axes.col(2) + Eigen::Vector3d::Constant(capsule->radius);
+  else
+  {
+    center = link_pose.translation();
+    half.setConstant(extent);
+  }
+  return {center - half, center + half};
+}
+
 }  // namespace
 
 MarkerScale markerScale(const Simulator& simulator, double force_scale)
 {
   MarkerScale scale;
   double size = 0.0;
-  double mass = 0.0;
+  double heaviest = 0.0;  // what of it moves [kg]
   Eigen::AlignedBox3d all;
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     const MultibodyModel& model = simulator.model(body);
+    const std::vector<Eigen::Isometry3d>& poses = simulator.data(body).link_pose;
     Eigen::AlignedBox3d box;
+    double mass = 0.0;
     for (size_t link = 0; link < model.links.size(); ++link)
       if (moves(model, link))
       {
         mass += model.links[link].inertia.mass;
-        const Eigen::Vector3d center = simulator.data(body).link_pose[link].translation();
-        const Eigen::Vector3d reach = Eigen::Vector3d::Constant(simulator.workspace(body).model.extents[link]);
-        box.extend(Eigen::AlignedBox3d(center - reach, center + reach));
+        box.extend(poses[link].translation());
       }
+    for (const CollisionShape& shape : model.shapes)
+      if (moves(model, shape.link))
+        box.extend(boundingBox(shape, poses[shape.link], simulator.workspace(body).model.extents[shape.link]));
     if (!box.isEmpty())
       size = std::max(size, box.sizes().maxCoeff());
+    heaviest = std::max(heaviest, mass);
     all.extend(box);
   }
   if (size > 0.0)
     scale.size = size;
-  const double weight = mass * simulator.scenario().gravity.norm();
+  const double weight = heaviest * simulator.scenario().gravity.norm();
   if (force_scale > 0.0)
     scale.force = force_scale;
   else if (weight > 0.0)
     scale.force = WEIGHT_ARROW * scale.size / weight;
   if (!all.isEmpty())
-    scale.legend =
-        Eigen::Vector3d(all.center().x(), all.max().y() + 0.3 * scale.size, all.max().z() + 0.2 * scale.size);
+    scale.legend = Eigen::Vector3d(all.center().x(), all.center().y(), all.max().z() + LEGEND_GAP * scale.size);
   return scale;
 }
 

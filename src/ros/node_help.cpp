@@ -45,7 +45,7 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"publish_base_tf", "true", "transforms of the root links, on /tf or, of fixed ones, on /tf_static"},
       {"publish_link_tf", "false", "transforms of all other links too, where no robot_state_publisher runs"},
       {"publish_clock", "true", "false where another node publishes /clock"},
-      {"force_scale", "0", "length of force arrows [m/N]; 0 = half the largest body's size for the weight"},
+      {"force_scale", "0", "length of force arrows [m/N]; 0 = the largest body's size for the heaviest one's weight"},
       {"start_paused", "false", "the first step waits for ~unpause or ~step"},
       {"wait_for_subscribers", "[]", "topics that must have a subscriber before the first step"},
       {"lossless_topics", "[]",

@@ -73,13 +73,14 @@ TEST(ContactMarkersTest, ArrowsAreForcesAndTheValueIsTheirSum)
   EXPECT_EQ(Marker::ADD, ofNamespace(message, "cone").front().action);
 }
 
-TEST(ContactMarkersTest, TheWeightIsHalfTheBodyLongAndNoArrowIsTooShortOrTooLong)
+TEST(ContactMarkersTest, TheWeightIsAsLongAsTheBodyAndNoArrowIsTooShortOrTooLong)
 {
   Simulator simulator(boxScenario());
   for (int k = 0; k < 100; ++k)
     simulator.step();
   const MarkerScale scale = markerScale(simulator, 0.0);
-  EXPECT_NEAR(0.5 * scale.size, scale.force * 98.1, 1e-12);
+  EXPECT_NEAR(0.2, scale.size, 1e-12);
+  EXPECT_NEAR(scale.size, scale.force * 98.1, 1e-12);
   for (const double factor : {1e-6, 1e6})
   {
     MarkerScale other = scale;
@@ -116,7 +117,7 @@ TEST(ContactMarkersTest, WhatIsGoneIsDeletedOnce)
   EXPECT_TRUE(ofNamespace(message, "force").empty());
 }
 
-TEST(BodyMarkersTest, ALinkIsItsVisualElseItsCollisionAndTheGroundIsABox)
+TEST(BodyMarkersTest, ALinkIsItsVisualElseItsCollisionAndTheGroundIsAPlane)
 {
   Scenario scenario;
   scenario.ground = GroundSpec();
@@ -136,8 +137,9 @@ TEST(BodyMarkersTest, ALinkIsItsVisualElseItsCollisionAndTheGroundIsABox)
   bodies.append(ros::Time(0, 1), 1.0, message);
   ASSERT_EQ(3u, message.markers.size());
   const Marker& ground = message.markers[0];
-  EXPECT_EQ(Marker::CUBE, ground.type);
-  EXPECT_NEAR(0.3, ground.pose.position.z + 0.5 * ground.scale.z, 1e-12);
+  ASSERT_EQ(6u, ground.points.size());
+  for (const geometry_msgs::Point& point : ground.points)
+    EXPECT_EQ(0.3, ground.pose.position.z + point.z);
   const Marker& drawn = message.markers[1];
   EXPECT_EQ(Marker::CYLINDER, drawn.type);
   EXPECT_EQ(0.2, drawn.scale.x);

@@ -19,7 +19,7 @@ public:
 
   /**
    * @brief Adds a marker for each shape at its present place: what the URDF draws of a link, else what collides; in the
-   * URDF's colours, else one a body; and the ground as a large thin box. Translucent: forces are seen through it.
+   * URDF's colours, else one a body; and a large piece of the ground. Translucent: forces are seen through it.
    * @param size of the scene [m]
    */
   void append(const ros::Time& stamp, double size, visualization_msgs::MarkerArray& message);

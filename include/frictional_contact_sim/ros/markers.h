@@ -22,7 +22,7 @@ struct MarkerScale
 
 /**
  * @brief From the bodies as they are now.
- * @param force_scale [m/N]; 0: half the size of the scene for the weight of what moves, 0.01 m/N where it has no weight
+ * @param force_scale [m/N]; 0: the size of the scene for the weight of the heaviest, 0.01 m/N where nothing has weight
  */
 MarkerScale markerScale(const Simulator& simulator, double force_scale);
 

@@ -36,7 +36,7 @@ struct NodeParameters
   double clock_rate = 0.0;  ///< of /clock; 0 = every step [1/s simulated]
   double tf_rate = 100.0;  ///< of /tf; 0 = every step [1/s simulated]
   double marker_rate = 30.0;  ///< of ~markers; 0 = every step [1/s simulated]
-  double force_scale = 0.0;  ///< length of force arrows [m/N]; 0 = half a metre for the weight of all bodies
+  double force_scale = 0.0;  ///< length of force arrows [m/N]; 0: see markerScale
   bool start_paused = false;
   std::vector<std::string> wait_for_subscribers;  ///< topics that must have a subscriber before the first step
   std::vector<std::string> lossless_topics;  ///< topics whose subscribers may hold a free run
