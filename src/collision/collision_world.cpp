@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <stdexcept>
 
@@ -86,12 +87,18 @@ struct CollisionWorld::Impl
   MeshLibrary meshes;  ///< of this world alone: a copy that is loaded further reads its files again
   std::vector<Eigen::Isometry3d> poses;  ///< of the shapes, world
   std::vector<Bounds> bounds;
+  std::vector<int> rigid_sets;  ///< shapes, or empty
   BroadPhase broad_phase;
   Manifold manifold;
   std::vector<ContactPoint> contacts;
 
   Impl() = default;
-  Impl(const Impl& other) : model(other.model), poses(other.poses), bounds(other.bounds), broad_phase(other.broad_phase)
+  Impl(const Impl& other)
+    : model(other.model)
+    , poses(other.poses)
+    , bounds(other.bounds)
+    , rigid_sets(other.rigid_sets)
+    , broad_phase(other.broad_phase)
   {
     manifold.reserve(2 * model->most_vertices);
   }
@@ -163,7 +170,8 @@ struct CollisionWorld::Impl
   {
     contacts.clear();
     for (const ShapePair& pair : candidates())
-      addPair(pair, std::max(bounds[pair.a].margin, bounds[pair.b].margin));
+      if (rigid_sets.empty() || rigid_sets[pair.a] != rigid_sets[pair.b])
+        addPair(pair, std::max(bounds[pair.a].margin, bounds[pair.b].margin));
     return contacts;
   }
 
@@ -318,6 +326,12 @@ const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double
   for (size_t i = 0; i < infos.size(); ++i)
     impl_->bounds[i].margin = infos[i].body < 0 ? -1.0 : body_margins[infos[i].body];
   return impl_->detect();
+}
+
+void CollisionWorld::setRigidSets(std::vector<int> set_of_shape)
+{
+  assert(set_of_shape.empty() || set_of_shape.size() == impl_->poses.size());
+  impl_->rigid_sets = std::move(set_of_shape);
 }
 
 void CollisionWorld::setBroadPhase(BroadPhaseKind kind)

@@ -128,6 +128,7 @@ const StepOutcome& Simulator::reset()
   state.energy = impl_->start.energy;
   state.energy_start = impl_->start.energy_start;
   state.scenario_clock = StepClock{};
+  impl_->joinWelded();
   impl_->updateEnds();
   impl_->rememberGood();
   impl_->restartReport();

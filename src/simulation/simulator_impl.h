@@ -40,6 +40,8 @@ struct Simulator::Impl
   int countIslands();
 
   void applyState();
+  void weld(const Weld& weld);
+  void joinWelded();  ///< tells the collision world which shapes are one rigid thing, after the list of welds changed
   const Body* findNotFinite() const;
   void goBack(const SimulationState& before);
   void setStart();

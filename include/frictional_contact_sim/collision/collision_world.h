@@ -97,6 +97,12 @@ public:
   /** @brief The same for one link. */
   void setLinkPose(int body, int link, const Eigen::Isometry3d& pose);
 
+  /**
+   * @brief Shapes that do not move against each other do not collide: of each shape the number of its set, none in any
+   * where the list is empty. Belongs to this world alone, as poses do.
+   */
+  void setRigidSets(std::vector<int> set_of_shape);
+
   /** @brief Who looks for near pairs; the points are the same. Copies have it too. */
   void setBroadPhase(BroadPhaseKind kind);
 
