@@ -1,6 +1,6 @@
 #include "frictional_contact_sim/ros/names.h"
 
-#include <map>
+#include <regex>
 
 namespace frictional_contact_sim
 {
@@ -11,30 +11,22 @@ std::string qualified(const std::string& body_name, const std::string& name)
   return body_name + "/" + name;
 }
 
-/** @brief How often each URDF name occurs, joints or links of all bodies. */
-std::map<std::string, int> countNames(const Simulator& simulator, bool joints)
+/** @brief Bare while it is the only one. */
+std::string nameOf(const NameRules& rules, const std::map<std::string, int>& count, const std::string& body,
+                   const std::string& name)
 {
-  std::map<std::string, int> count;
-  for (int body = 0; body < simulator.bodyCount(); ++body)
-  {
-    const MultibodyModel& model = simulator.model(body);
-    if (joints)
-      for (const Joint& joint : model.joints)
-        ++count[joint.name];
-    else
-      for (const Frame& frame : model.frames)
-        ++count[frame.name];
-  }
-  return count;
+  const auto found = count.find(name);
+  const bool is_unique = found != count.end() && found->second == 1;
+  return is_unique && rules.prefixed.count(body) == 0 ? name : qualified(body, name);
 }
 
-void addJoints(const Simulator& simulator, int body, const std::map<std::string, int>& count, NameTable& table)
+void addJoints(const Simulator& simulator, int body, const NameRules& rules, NameTable& table)
 {
   const MultibodyModel& model = simulator.model(body);
   for (size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
   {
     const Joint& joint = model.joints[i];
-    const std::string name = count.at(joint.name) == 1 ? joint.name : qualified(simulator.bodyName(body), joint.name);
+    const std::string name = nameOf(rules, rules.joints, simulator.bodyName(body), joint.name);
     if (velocitySize(joint.type) != 1)
     {
       table.unsupported_joints.push_back(name);
@@ -49,27 +41,51 @@ void addJoints(const Simulator& simulator, int body, const std::map<std::string,
 
 }  // namespace
 
+NameRules nameRules(const Simulator& simulator, const std::set<std::string>& prefixed)
+{
+  NameRules rules;
+  rules.prefixed = prefixed;
+  if (simulator.bodyCount() > 0 && prefixed.count(simulator.bodyName(0)) == 0)
+    rules.first = simulator.bodyName(0);
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    if (prefixed.count(simulator.bodyName(body)) > 0)
+      continue;
+    for (const Joint& joint : simulator.model(body).joints)
+      ++rules.joints[joint.name];
+    for (const Frame& frame : simulator.model(body).frames)
+      ++rules.links[frame.name];
+  }
+  return rules;
+}
+
 NameTable makeNameTable(const Simulator& simulator)
 {
+  return makeNameTable(simulator, nameRules(simulator));
+}
+
+NameTable makeNameTable(const Simulator& simulator, const NameRules& rules)
+{
   NameTable table;
-  const std::map<std::string, int> joint_count = countNames(simulator, true);
-  const std::map<std::string, int> link_count = countNames(simulator, false);
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     const MultibodyModel& model = simulator.model(body);
     table.bodies.push_back(simulator.bodyName(body));
-    addJoints(simulator, body, joint_count, table);
+    addJoints(simulator, body, rules, table);
     std::vector<std::string> frames;
     for (const Frame& frame : model.frames)
-    {
-      const bool unique = link_count.at(frame.name) == 1;
-      frames.push_back(unique ? frame.name : qualified(simulator.bodyName(body), frame.name));
-    }
+      frames.push_back(nameOf(rules, rules.links, simulator.bodyName(body), frame.name));
     const int root = model.findFrame(model.links.front().name);
     table.roots.push_back(root >= 0 ? frames[root] : model.links.front().name);
     table.frames.push_back(frames);
   }
   return table;
+}
+
+bool isTopicPart(const std::string& name)
+{
+  static const std::regex PART("[A-Za-z][A-Za-z0-9_]*");
+  return std::regex_match(name, PART);
 }
 
 int findJoint(const NameTable& table, const std::string& name)

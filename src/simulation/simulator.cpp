@@ -43,9 +43,13 @@ std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
   return bodies;
 }
 
+StepSolver makeSolver(const Scenario& scenario)
+{
+  return StepSolver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure);
+}
 }  // namespace
 
-Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model, StepSolver step_solver)
   : world(std::move(world_model))
   , scenario(world->scenario)
   , collision(world->collision)
@@ -54,7 +58,12 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , context(makeContext(scenario))
   , contact_set(bodies, collision, world->pairs, state.rows.contacts)
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
-  , solver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure)
+  , solver(std::move(step_solver))
+{
+}
+
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
+  : Impl(world_model, makeSolver(world_model->scenario))
 {
   rememberGood();
   updateEnds();

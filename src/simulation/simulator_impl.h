@@ -18,6 +18,11 @@ namespace frictional_contact_sim
 struct Simulator::Impl
 {
   explicit Impl(std::shared_ptr<const WorldModel> world_model);
+  /// Without an impact solve: what is to be taken over follows.
+  Impl(std::shared_ptr<const WorldModel> world_model, StepSolver step_solver);
+  void takeOver(const Impl& old, const std::vector<int>& new_body);
+  void bookArrival(int body, double sign, const Impl& of);
+  bool checkPlace(int body);
 
   // the step, in this order
   void moveToMidpoint();

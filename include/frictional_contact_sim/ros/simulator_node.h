@@ -22,6 +22,11 @@
 
 namespace frictional_contact_sim
 {
+/** @brief Text of ~parameter, else of the parameter in this namespace or one above, else empty.
+ *  @throws ParameterError when it is not a text */
+std::string findDescription(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                            const std::string& parameter);
+
 class SimulatorNode
 {
 public:

@@ -71,11 +71,12 @@ public:
   int shapeCount() const;
   double time() const;
   const Scenario& scenario() const;
-  const std::vector<std::string>& warnings() const;  ///< from loading, one line each
+  const std::vector<std::string>& warnings() const;  ///< from loading, one line each; after a spawn the new body's
   double loadingSeconds() const;
 
   int bodyCount() const;  ///< in the order of the scenario
   const std::string& bodyName(int body) const;
+  int findBody(const std::string& name) const;  ///< -1 where there is none
   const MultibodyModel& model(int body) const;
   const MultibodyData& data(int body) const;  ///< poses and velocities at the end of the step
   Eigen::VectorXd& position(int body);  ///< nq; call stateChanged() after writing
@@ -119,6 +120,22 @@ public:
   const std::vector<Weld>& welds() const;  ///< in the order they were made
   /** @brief Mean force and torque (about the origin of link a) on link a over the last step, world axes [N, N m]. */
   Vector6d weldWrench(int weld) const;
+
+  /**
+   * @brief One body more, the last, at the pose and velocities of `spec`, which are also those a reset takes it to.
+   * Clocks, the other bodies, their welds and warm starts go on to the bit. Where it touches something that it runs
+   * into, the impact is solved; without an answer there outcome().taken says whether the body is there. What
+   * references got from this simulator before is void.
+   * @throws as the constructor, and std::invalid_argument for a name that is taken, or a place where it is inside
+   * another body or the ground (deeper than a thousandth of the smaller shape): who adds a body to a world that moves
+   * has to hear of it, he cannot look first. Nothing has changed then
+   */
+  const StepOutcome& spawn(const BodySpec& spec);
+  /**
+   * @brief Takes a body out, with its contacts and welds. The others go on; bodies behind it get the number before
+   * theirs. @throws std::invalid_argument for an unknown name
+   */
+  void remove(const std::string& name);
 
   /** @throws std::invalid_argument listing the valid names */
   void setSolver(const std::string& name);
