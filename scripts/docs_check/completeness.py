@@ -4,7 +4,7 @@ import re
 
 PAGE = pathlib.Path('docs/interfaces.md')
 KEY = re.compile(r'[kK]ey\(\s*"(\w+)"')
-ADVERTISED = re.compile(r'\b(?:advertise\w*(?:<[^;"]*>)?|subscribe\w*(?:<[^;"]*>)?|empty|add)\(\s*(?:\w+, )?"([\w/]+)"')
+ADVERTISED = re.compile(r'\b(?:advertise\w*(?:<[^;"]*>)?|subscribe\w*(?:<[^;"]*>)?|add(?:<[\w:]+>)?)\(\s*(?:\w+, )?"([\w/]+)"')
 # Kind, files, names in them, and how many there are at least: a reader that is written anew must not escape the check.
 SOURCES = [
     ('parameter', 'src/ros/param*.cpp', KEY.findall, 25),

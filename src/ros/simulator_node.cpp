@@ -5,6 +5,7 @@
 #include <ros/init.h>
 #include <ros/names.h>
 #include <std_msgs/String.h>
+#include <std_srvs/SetBool.h>
 
 #include <algorithm>
 
@@ -69,6 +70,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , commands_(private_node, simulator_, names_, parameters.servo_gains)
   , pacer_(parameters.real_time_factor)
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
+  , services_(private_node)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
 {
@@ -82,7 +84,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
   setServoGains();
   simulator_.setStart();  // a reset keeps the gains
-  advertiseServices(private_node);
+  advertiseServices();
   lossless_nodes_ = node.subscribe<std_msgs::String>(LOSSLESS_NODES_TOPIC, 100,
                                                      [this](const std_msgs::String::ConstPtr& message)
                                                      { delivery_.addLosslessNode(message->data); });
@@ -112,44 +114,29 @@ void SimulatorNode::setServoGains()
   }
 }
 
-void SimulatorNode::advertiseServices(ros::NodeHandle& private_node)
+/** @brief Seam "service": one line each. */
+void SimulatorNode::advertiseServices()
 {
-  const auto empty = [&](const std::string& name, const std::function<void()>& action)
-  {
-    services_.push_back(private_node.advertiseService<std_srvs::Empty::Request, std_srvs::Empty::Response>(
-        name,
-        [action](std_srvs::Empty::Request&, std_srvs::Empty::Response&)
-        {
-          action();
-          return true;
-        }));
-  };
   const auto pause = [this] { setPaused(true); };
   const auto unpause = [this] { setPaused(false); };
-  const auto reset = [this] { this->reset(); };
-  empty("pause", pause);
-  empty("unpause", unpause);
-  empty("reset", reset);
-  empty("reset_time", [this] { resetTime(); });
+  const auto reset_state = [this] { reset(); };
+  const auto reset_all = [this]
+  {
+    reset();
+    resetTime();
+  };
+  services_.add("pause", pause);
+  services_.add("unpause", unpause);
+  services_.add("reset", reset_state);
+  services_.add("reset_time", [this] { resetTime(); });
   // Gazebo's names.
-  empty("pause_physics", pause);
-  empty("unpause_physics", unpause);
-  empty("reset_world", reset);
-  empty("reset_simulation",
-        [this]
-        {
-          this->reset();
-          resetTime();
-        });
-  services_.push_back(private_node.advertiseService<std_srvs::SetBool::Request, std_srvs::SetBool::Response>(
-      "set_paused",
-      [this](std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
-      {
-        setPaused(request.data);
-        response.success = true;
-        return true;
-      }));
-  services_.push_back(private_node.advertiseService("step", &SimulatorNode::stepService, this));
+  services_.add("pause_physics", pause);
+  services_.add("unpause_physics", unpause);
+  services_.add("reset_world", reset_state);
+  services_.add("reset_simulation", reset_all);
+  services_.add<std_srvs::SetBool>(
+      "set_paused", [this](const auto& request, auto&) { setPaused(request.data); });
+  services_.add<Step>("step", [this](const auto& request, auto& response) { takeSteps(request, response); });
 }
 
 void SimulatorNode::setPaused(bool paused)
@@ -180,42 +167,28 @@ void SimulatorNode::resetTime()
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
-bool SimulatorNode::stepService(Step::Request& request, Step::Response& response)
+void SimulatorNode::takeSteps(const Step::Request& request, Step::Response& response)
 {
-  response.success = false;
   if (!paused_ || waiting_)
+    throw RequestError(waiting_ ? "waiting for subscribers" : "the simulation runs: pause it first");
+  // No other call is answered meanwhile.
+  if (request.n == 0 || request.n > MAX_STEPS_PER_CALL)
+    throw RequestError("n: found " + std::to_string(request.n) + ", expected 1 to " +
+                       std::to_string(MAX_STEPS_PER_CALL) + "; unpause for longer runs");
+  std::uint32_t done = 0;
+  Outcome outcome = Outcome::GO_ON;
+  while (done < request.n && outcome == Outcome::GO_ON && going())
   {
-    response.message = waiting_ ? "waiting for subscribers" : "the simulation runs: pause it first";
+    outcome = advance();
+    done += simulator_.outcome().taken;
+    if (windowEnds())
+      hold([] { ros::WallDuration(HOLD_PERIOD).sleep(); });  // no other call is served within this one
   }
-  else if (request.n == 0)
-  {
-    response.message = "n: found 0, expected at least 1";
-  }
-  else if (request.n > MAX_STEPS_PER_CALL)
-  {
-    // No other call is answered meanwhile.
-    response.message = "n: found " + std::to_string(request.n) + ", expected at most " +
-                       std::to_string(MAX_STEPS_PER_CALL) + "; unpause for longer runs";
-  }
-  else
-  {
-    std::uint32_t done = 0;
-    Outcome outcome = Outcome::GO_ON;
-    while (done < request.n && outcome == Outcome::GO_ON && going())
-    {
-      outcome = advance();
-      done += simulator_.outcome().taken;
-      if (windowEnds())
-        hold([] { ros::WallDuration(HOLD_PERIOD).sleep(); });  // no other call is served within this one
-    }
-    publisher_.publishRest();
-    response.success = done == request.n && outcome != Outcome::FAILED && outcome != Outcome::PAUSED;
-    if (!response.success)
-      response.message = "stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps";
-    outcome_ = outcome == Outcome::PAUSED ? Outcome::GO_ON : outcome;
-    response.report = publisher_.report(pacer_.realTimeFactor());
-  }
-  return true;
+  publisher_.publishRest();
+  response.report = publisher_.report(pacer_.realTimeFactor());
+  outcome_ = outcome == Outcome::PAUSED ? Outcome::GO_ON : outcome;
+  if (done < request.n || outcome == Outcome::FAILED || outcome == Outcome::PAUSED)
+    throw RequestError("stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps");
 }
 
 /** @brief A run that goes on may fail at every step: it gets a line a second. */

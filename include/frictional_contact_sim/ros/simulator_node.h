@@ -6,8 +6,6 @@
  */
 #include <frictional_contact_sim/Step.h>
 #include <ros/node_handle.h>
-#include <std_srvs/Empty.h>
-#include <std_srvs/SetBool.h>
 
 #include <functional>
 #include <limits>
@@ -17,6 +15,7 @@
 #include "frictional_contact_sim/ros/command_listener.h"
 #include "frictional_contact_sim/ros/delivery.h"
 #include "frictional_contact_sim/ros/pacer.h"
+#include "frictional_contact_sim/ros/services.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
 
@@ -45,7 +44,7 @@ private:
     FAILED
   };
 
-  void advertiseServices(ros::NodeHandle& private_node);
+  void advertiseServices();
   void setServoGains();
 
   Outcome advance();
@@ -59,7 +58,7 @@ private:
   void setPaused(bool paused);
   void reset();
   void resetTime();
-  bool stepService(Step::Request& request, Step::Response& response);
+  void takeSteps(const Step::Request& request, Step::Response& response);
 
   NodeParameters parameters_;
   Simulator simulator_;
@@ -71,7 +70,7 @@ private:
   Throttle failure_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
-  std::vector<ros::ServiceServer> services_;
+  ServiceTable services_;
   ros::Subscriber lossless_nodes_;
   bool paused_ = false;
   bool waiting_ = false;
