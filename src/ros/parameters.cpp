@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "frictional_contact_sim/ros/names.h"
 #include "frictional_contact_sim/config/nearest_name.h"
+#include "frictional_contact_sim/ros/names.h"
 #include "frictional_contact_sim/ros/parameter_tree.h"
 #include "frictional_contact_sim/simulation/scenario_files.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
@@ -27,9 +27,10 @@ void readPositions(const ConfigNode& node, BodySpec& body)
 /** @brief What a scenario file would say of the robot of robot_description. */
 ConfigKeys robotKeys(BodySpec& body)
 {
-  return bodyKeys(body) + ConfigKeys{poseKey("base_pose", body), linkMaterialsKey("link_materials", body),
-                                     key("initial_joint_positions",
-                                         [&body](const ConfigNode& node) { readPositions(node, body); })};
+  return bodyKeys(body) +
+         ConfigKeys{poseKey("base_pose", body), linkMaterialsKey("link_materials", body),
+                    key(
+                        "initial_joint_positions", [&body](const ConfigNode& node) { readPositions(node, body); })};
 }
 
 /** @brief And of what it meets. */
@@ -146,8 +147,8 @@ void readRobots(const ConfigNode& robots, const FindDescription& find, NodeParam
         node.fail(error.what());
       }
     };
-    robot.readMap(bodyKeys(body) + ConfigKeys{required(key("description", read_description)),
-                                              linkMaterialsKey("materials", body)});
+    robot.readMap(bodyKeys(body) +
+                  ConfigKeys{required(key("description", read_description)), linkMaterialsKey("materials", body)});
     checkMaterials(robot, "materials", body, scenario.materials);
     scenario.bodies.push_back(body);
     parameters.robots.insert(name);
@@ -164,7 +165,8 @@ ConfigKeys otherKeys(NodeParameters& parameters)
 {
   const auto known = [](const ConfigNode&) {};
   return numericKeys(parameters.scenario) + shortKeys(parameters.scenario) + fileKeys(parameters) +
-         nodeKeys(parameters) + ConfigKeys{key("scenario", known), key("robot_description", known), key("robots", known)};
+         nodeKeys(parameters) +
+         ConfigKeys{key("scenario", known), key("robot_description", known), key("robots", known)};
 }
 }  // namespace
 
@@ -203,8 +205,8 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   if (!file.empty())
   {
     scenario = loadScenarioFile(findScenario(file));
-    keys = unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) +
-           ConfigKeys{holdKey(hold)};
+    keys =
+        unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + ConfigKeys{holdKey(hold)};
   }
   else if (root.has("robots"))
   {
@@ -222,7 +224,8 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   }
   else
   {
-    throw ParameterError("robot_description: not set, and no ~scenario or ~robots either: expected a URDF document or a file");
+    throw ParameterError(
+        "robot_description: not set, and no ~scenario or ~robots either: expected a URDF document or a file");
   }
   root.readMap(keys + otherKeys(parameters));
   checkSolver(root.at("solver_options"), scenario);

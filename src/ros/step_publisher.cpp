@@ -76,7 +76,8 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
                   step_report_publisher_.getTopic()};
   odometry_.resize(simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
-    advertiseOdometry(private_node, body, simulator.bodyName(body) == rules.first ? "" : simulator.bodyName(body) + "/");
+    advertiseOdometry(private_node, body,
+                      simulator.bodyName(body) == rules.first ? "" : simulator.bodyName(body) + "/");
   for (const ros::Publisher& publisher : body_joints_.publishers())
     data_topics_.insert(publisher.getTopic());
   markers_publisher_ = advertise(private_node, "markers", LATEST_QUEUE, &StepPublisher::allMarkers);

@@ -43,13 +43,14 @@ std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
   return bodies;
 }
 
-StepSolver makeSolver(const Scenario& scenario)
+std::shared_ptr<StepSolver> makeSolver(const Scenario& scenario)
 {
-  return StepSolver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure);
+  return std::make_shared<StepSolver>(createSolver(scenario.solver, scenario.solver_options), scenario.stopping,
+                                      scenario.failure);
 }
 }  // namespace
 
-Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model, StepSolver step_solver)
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model, std::shared_ptr<StepSolver> step_solver)
   : world(std::move(world_model))
   , scenario(world->scenario)
   , collision(world->collision)
@@ -58,7 +59,8 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model, StepSolver 
   , context(makeContext(scenario))
   , contact_set(bodies, collision, world->pairs, state.rows.contacts)
   , assembly(bodies, makeRowSources(bodies, collision, world->pairs, state.rows, &contact_set), state.rows)
-  , solver(std::move(step_solver))
+  , solver_owner(std::move(step_solver))
+  , solver(*solver_owner)
 {
 }
 

@@ -183,32 +183,22 @@ const StepOutcome& Simulator::spawn(const BodySpec& spec)
   if (findBody(spec.name) >= 0)
     throw std::invalid_argument("name: found '" + spec.name + "', expected one that no body has yet");
   const std::shared_ptr<const WorldModel> world = withBody(*impl_->world, impl_->scenario, spec);
-  auto next = std::make_unique<Impl>(world, std::move(impl_->solver));
-  try
+  auto next = std::make_unique<Impl>(world, impl_->solver_owner);
+  const int body = bodyCount();
+  next->takeOver(*impl_, sameNumbers(impl_->bodies.size()));
+  next->bookArrival(body, 1.0, *next);
+  if (next->checkPlace(body))
   {
-    const int body = bodyCount();
-    next->takeOver(*impl_, sameNumbers(impl_->bodies.size()));
-    next->bookArrival(body, 1.0, *next);
-    if (next->checkPlace(body))
-    {
-      next->solver.begin();
-      next->impactSolve();
-      if (next->outcome.taken)
-        next->rememberGood();
-    }
-  }
-  catch (...)
-  {
-    impl_->solver = std::move(next->solver);
-    throw;
+    next->solver.begin();
+    next->impactSolve();
   }
   if (next->outcome.taken)
   {
+    next->rememberGood();
     impl_ = std::move(next);
-    return impl_->outcome;
   }
-  impl_->solver = std::move(next->solver);
-  impl_->outcome = next->outcome;
+  else
+    impl_->outcome = next->outcome;
   return impl_->outcome;
 }
 
@@ -227,7 +217,7 @@ void Simulator::remove(const std::string& name)
   Renumbering new_body = sameNumbers(impl_->bodies.size());
   for (size_t b = 0; b < new_body.size(); ++b)
     new_body[b] = static_cast<int>(b) == body ? -1 : new_body[b] - (static_cast<int>(b) > body ? 1 : 0);
-  auto next = std::make_unique<Impl>(world, std::move(impl_->solver));
+  auto next = std::make_unique<Impl>(world, impl_->solver_owner);
   next->takeOver(*impl_, new_body);
   next->bookArrival(body, -1.0, *impl_);
   impl_ = std::move(next);

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ private:
 
   void advertiseServices();
   void setServoGains();
+  void addWorldServices();
+  void changeBodies(const std::function<void()>& change);
 
   Outcome advance();
   Outcome judge(const std::string& where);
@@ -60,10 +63,13 @@ private:
   void resetTime();
   void takeSteps(const Step::Request& request, Step::Response& response);
 
+  ros::NodeHandle node_;
+  ros::NodeHandle private_node_;
   NodeParameters parameters_;
   Simulator simulator_;
+  NameRules name_rules_;
   NameTable names_;
-  StepPublisher publisher_;
+  std::unique_ptr<StepPublisher> publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
   Pacer pacer_;
