@@ -102,6 +102,11 @@ void StepPublisher::takeOver(StepPublisher& before)
 {
   stamp_ = before.stamp_;
   greeting_ = before.greeting_;
+  // Those who listen already are announced to the new publishers by roscpp as if they came now, and so greeted: with a
+  // stamp of its own, as in publishState.
+  if (greeting_)
+    stamp_ += ros::Duration(0, 1);
+  transforms_stamp_ = markers_stamp_ = stamp_;
   if (!listened(markers_publisher_))
     return;
   markers_.markers.resize(1);

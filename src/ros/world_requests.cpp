@@ -69,8 +69,6 @@ void SimulatorNode::changeBodies(const std::function<void()>& change)
   next->takeOver(*publisher_);
   publisher_ = std::move(next);
   delivery_.setTopics(publisher_->dataTopics());
-  if (paused_)
-    publisher_->publishState();
 }
 
 }  // namespace frictional_contact_sim
