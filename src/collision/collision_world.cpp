@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
-#include "broad_phase.h"
 #include "frictional_contact_sim/collision/narrow_phase.h"
 #include "mesh_library.h"
 #include "oriented_boxes.h"
+#include "shape_model.h"
 
 namespace frictional_contact_sim
 {
@@ -16,82 +18,33 @@ namespace
 {
 constexpr double OVERLAP_GAP = -1e-9;  // [m] less is an overlap of the initial pose, not a touch
 
-struct Instance
-{
-  ConvexShape shape;
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the link, or in the world for static shapes
-  bool is_immobile = false;  ///< static, or on a fixed base
-};
-
-struct CollidingBody
-{
-  std::vector<int> parent;  ///< of every link
-  std::vector<int> shapes;  ///< handles
-  std::vector<std::string> frame_names;
-  bool is_mounted = false;  ///< on a fixed base, no floating joint
-  bool collides_with_itself = true;
-  std::vector<std::array<int, 2>> disabled;  ///< frames, the lower first; sorted
-  std::vector<std::array<int, 2>> disabled_static;  ///< frame, handle of a static shape; sorted
-};
-
-bool contains(const std::vector<std::array<int, 2>>& sorted, const std::array<int, 2>& pair)
-{
-  return std::binary_search(sorted.begin(), sorted.end(), pair);
-}
-
 void insert(std::vector<std::array<int, 2>>& sorted, const std::array<int, 2>& pair)
 {
   const auto place = std::lower_bound(sorted.begin(), sorted.end(), pair);
   if (place == sorted.end() || *place != pair)
     sorted.insert(place, pair);
 }
-
-/// What poses do not change: written while a world is loaded, then shared by its copies.
-struct ShapeModel : PairRule
-{
-  std::vector<Instance> instances;
-  std::vector<ShapeInfo> infos;
-  std::vector<CollidingBody> bodies;
-  size_t most_vertices = 0;
-
-  bool mayCollide(int i, int k) const override;
-  bool isStatic(int i) const override { return infos[i].body < 0; }
-  bool isImmobile(int i) const override { return instances[i].is_immobile; }
-};
-
-bool ShapeModel::mayCollide(int i, int k) const
-{
-  if (instances[i].is_immobile && instances[k].is_immobile)
-    return false;
-  const ShapeInfo& first = infos[i];
-  const ShapeInfo& second = infos[k];
-  if (first.body < 0 || second.body < 0)
-  {
-    const ShapeInfo& moving = first.body < 0 ? second : first;
-    return !contains(bodies[moving.body].disabled_static, {moving.frame, first.body < 0 ? i : k});
-  }
-  if (first.body != second.body)
-    return true;
-  const CollidingBody& body = bodies[first.body];
-  const bool is_adjacent =
-      first.link == second.link || body.parent[first.link] == second.link || body.parent[second.link] == first.link;
-  return !is_adjacent && body.collides_with_itself &&
-         !contains(body.disabled, {std::min(first.frame, second.frame), std::max(first.frame, second.frame)});
-}
 }  // namespace
 
 struct CollisionWorld::Impl
 {
   std::shared_ptr<const ShapeModel> model = std::make_shared<ShapeModel>();
-  MeshLibrary meshes;  ///< of this world alone: a copy that is loaded further reads its files again
+  MeshLibrary meshes;  ///< copies know what has been read, and read more for themselves
   std::vector<Eigen::Isometry3d> poses;  ///< of the shapes, world
   std::vector<Bounds> bounds;
+  std::vector<int> rigid_sets;  ///< shapes, or empty
   BroadPhase broad_phase;
   Manifold manifold;
   std::vector<ContactPoint> contacts;
 
   Impl() = default;
-  Impl(const Impl& other) : model(other.model), poses(other.poses), bounds(other.bounds), broad_phase(other.broad_phase)
+  Impl(const Impl& other)
+    : model(other.model)
+    , meshes(other.meshes)
+    , poses(other.poses)
+    , bounds(other.bounds)
+    , rigid_sets(other.rigid_sets)
+    , broad_phase(other.broad_phase)
   {
     manifold.reserve(2 * model->most_vertices);
   }
@@ -115,6 +68,22 @@ struct CollisionWorld::Impl
     poses.push_back(Eigen::Isometry3d::Identity());
     bounds.emplace_back();
     return static_cast<int>(poses.size()) - 1;
+  }
+
+  /// See ShapeModel::arrange. Which shapes are rigid sets has to be said anew.
+  void arrange(const std::vector<int>& old_handles)
+  {
+    edit().arrange(old_handles);
+    const std::vector<Eigen::Isometry3d> old_poses = poses;
+    const std::vector<Bounds> old_bounds = bounds;
+    poses.clear();
+    bounds.clear();
+    for (const int old : old_handles)
+    {
+      poses.push_back(old_poses[old]);
+      bounds.push_back(old_bounds[old]);
+    }
+    rigid_sets.clear();
   }
 
   void setPose(int handle, const Eigen::Isometry3d& pose)
@@ -163,7 +132,8 @@ struct CollisionWorld::Impl
   {
     contacts.clear();
     for (const ShapePair& pair : candidates())
-      addPair(pair, std::max(bounds[pair.a].margin, bounds[pair.b].margin));
+      if (rigid_sets.empty() || rigid_sets[pair.a] != rigid_sets[pair.b])
+        addPair(pair, std::max(bounds[pair.a].margin, bounds[pair.b].margin));
     return contacts;
   }
 
@@ -260,7 +230,26 @@ void CollisionWorld::disableSelfCollision(int body)
   impl_->edit().bodies[body].collides_with_itself = false;
 }
 
-std::vector<std::string> CollisionWorld::disableOverlaps()
+void CollisionWorld::putStaticLast()
+{
+  std::vector<int> order(impl_->poses.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_partition(order.begin(), order.end(), [this](int handle) { return shape(handle).body >= 0; });
+  impl_->arrange(order);
+}
+
+void CollisionWorld::removeBody(int body)
+{
+  static_cast<void>(impl_->body(body));
+  std::vector<int> order;
+  for (int handle = 0; handle < shapeCount(); ++handle)
+    if (shape(handle).body != body)
+      order.push_back(handle);
+  impl_->arrange(order);
+  impl_->edit().eraseBody(body);
+}
+
+std::vector<std::string> CollisionWorld::disableOverlaps(int body)
 {
   std::vector<std::string> disabled;
   for (Bounds& box : impl_->bounds)
@@ -272,7 +261,7 @@ std::vector<std::string> CollisionWorld::disableOverlaps()
     const ShapeInfo& a = model.infos[pair.a];
     const ShapeInfo& b = model.infos[pair.b];
     const bool is_mounted = b.body < 0 && model.bodies[a.body].is_mounted;
-    if ((a.body != b.body && !is_mounted) || !model.mayCollide(pair.a, pair.b))
+    if ((a.body != b.body && !is_mounted) || (body >= 0 && a.body != body) || !model.mayCollide(pair.a, pair.b))
       continue;
     const std::string names = a.link_name + " - " + b.link_name;  // the model may be another one after an edit
     impl_->collidePair(pair, 0.0);
@@ -318,6 +307,12 @@ const std::vector<ContactPoint>& CollisionWorld::detect(const std::vector<double
   for (size_t i = 0; i < infos.size(); ++i)
     impl_->bounds[i].margin = infos[i].body < 0 ? -1.0 : body_margins[infos[i].body];
   return impl_->detect();
+}
+
+void CollisionWorld::setRigidSets(std::vector<int> set_of_shape)
+{
+  assert(set_of_shape.empty() || set_of_shape.size() == impl_->poses.size());
+  impl_->rigid_sets = std::move(set_of_shape);
 }
 
 void CollisionWorld::setBroadPhase(BroadPhaseKind kind)

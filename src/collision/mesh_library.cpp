@@ -14,10 +14,10 @@ std::vector<ConvexShape> MeshLibrary::shapesOf(const Geometry& geometry, const s
   auto found = entries_.find(key);
   if (found == entries_.end())
   {
-    Entry entry;
+    auto entry = std::make_shared<Entry>();
     try
     {
-      entry.hulls = loadMeshHulls(mesh->path, mesh->scale, entry.addition);
+      entry->hulls = loadMeshHulls(mesh->path, mesh->scale, entry->addition);
     }
     catch (const ModelError& error)
     {
@@ -25,10 +25,11 @@ std::vector<ConvexShape> MeshLibrary::shapesOf(const Geometry& geometry, const s
     }
     found = entries_.emplace(key, std::move(entry)).first;
   }
-  if (warnings != nullptr && !found->second.addition.empty())
-    warnings->push_back("link '" + link + "': collision mesh " + mesh->path + ": " + found->second.addition);
+  const Entry& entry = *found->second;
+  if (warnings != nullptr && !entry.addition.empty())
+    warnings->push_back("link '" + link + "': collision mesh " + mesh->path + ": " + entry.addition);
   std::vector<ConvexShape> shapes;
-  for (const Polyhedron& hull : found->second.hulls)
+  for (const Polyhedron& hull : entry.hulls)
     shapes.push_back(makeShape(hull));
   return shapes;
 }

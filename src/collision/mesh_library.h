@@ -4,6 +4,7 @@
  * @brief The shapes of collision geometries; each mesh file is read once, however many links have it.
  */
 #include <map>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -29,7 +30,8 @@ private:
     std::vector<Polyhedron> hulls;
     std::string addition;
   };
-  std::map<std::tuple<std::string, double, double, double>, Entry> entries_;  ///< by file and scale
+  /// By file and scale; never changed once they are read, so that copies may be used in several threads.
+  std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const Entry>> entries_;
 };
 
 }  // namespace frictional_contact_sim

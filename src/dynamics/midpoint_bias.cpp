@@ -34,6 +34,12 @@ void StepAssembly::findActing(const Solution& solution)
   mark(problem_.G, solution.lambda);
 }
 
+const std::vector<char>& StepAssembly::acting(const Solution& solution)
+{
+  findActing(solution);
+  return acting_;
+}
+
 /** Which bodies an impulse of the last step touches. */
 void StepAssembly::findLastActing(const StepContext& context)
 {

@@ -55,7 +55,8 @@ void RowSink::copyTo(bool impact, IncrementalProblem& problem) const
   problem.w = Eigen::Map<const Eigen::VectorXd>(w_.data(), static_cast<Eigen::Index>(w_.size()));
   problem.b = Eigen::Map<const Eigen::VectorXd>(b_.data(), static_cast<Eigen::Index>(b_.size()));
   if (impact)
-    problem.b.setZero();
+    for (size_t k = 0; k < b_.size(); ++k)
+      problem.b[static_cast<Eigen::Index>(k)] = bilateral_records_[k].base_velocity;
   problem.laws = laws_;
 }
 

@@ -9,6 +9,7 @@
 #include "frictional_contact_sim/dynamics/limit_rows.h"
 #include "frictional_contact_sim/dynamics/mimic_rows.h"
 #include "frictional_contact_sim/dynamics/servo_rows.h"
+#include "frictional_contact_sim/dynamics/weld_rows.h"
 
 namespace frictional_contact_sim
 {
@@ -50,6 +51,7 @@ std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies
   sources.push_back(std::make_unique<DryFrictionRows>(bodies, memory()));
   sources.push_back(std::make_unique<ServoRows>(bodies, memory()));
   sources.push_back(std::make_unique<MimicRows>(bodies, memory()));
+  sources.push_back(std::make_unique<WeldRows>(bodies, state.welds));
   // Last: tangents are looked at once everything else of the step is settled.
   if (creep)
     sources.push_back(std::move(creep));

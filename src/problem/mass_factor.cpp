@@ -32,6 +32,8 @@ void MassFactor::analyse(const SparseRows& M)
   for (std::vector<int>* array : {&permutation_, &inverse_permutation_, &parent_, &counts_, &flags_, &pattern_})
     array->assign(count, 0);
   column_begin_.assign(count + 1, 0);
+  inverse_root_pivots_.resize(size);
+  permuted_.resize(size);
   if (size == 0)
     return;
   // M is symmetric with both triangles stored, so its compressed rows are its compressed columns.
@@ -58,8 +60,6 @@ void MassFactor::analyse(const SparseRows& M)
   values_.resize(fill);
   pivots_.resize(count);
   work_.resize(count);
-  inverse_root_pivots_.resize(size);
-  permuted_.resize(size);
 }
 
 bool MassFactor::compute(const SparseRows& M)

@@ -1,7 +1,7 @@
 #include "frictional_contact_sim/ros/names.h"
 
 #include <cctype>
-#include <map>
+#include <regex>
 
 namespace frictional_contact_sim
 {
@@ -12,23 +12,22 @@ std::string qualified(const std::string& body_name, const std::string& name)
   return body_name + "/" + name;
 }
 
-/** @brief How often each URDF name occurs, joints or links of all bodies. */
-std::map<std::string, int> countNames(const Simulator& simulator, const std::string Frame::*name)
+/** @brief Bare while it is the only one. */
+std::string nameOf(const NameRules& rules, const std::map<std::string, int>& count, const std::string& body,
+                   const std::string& name)
 {
-  std::map<std::string, int> count;
-  for (int body = 0; body < simulator.bodyCount(); ++body)
-    for (const Frame& frame : simulator.model(body).frames)
-      ++count[frame.*name];
-  return count;
+  const auto found = count.find(name);
+  const bool is_unique = found != count.end() && found->second == 1;
+  return is_unique && rules.prefixed.count(body) == 0 ? name : qualified(body, name);
 }
 
-void addJoints(const Simulator& simulator, int body, const std::map<std::string, int>& count, NameTable& table)
+void addJoints(const Simulator& simulator, int body, const NameRules& rules, NameTable& table)
 {
   const MultibodyModel& model = simulator.model(body);
   for (size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
   {
     const Joint& joint = model.joints[i];
-    const std::string name = count.at(joint.name) == 1 ? joint.name : qualified(simulator.bodyName(body), joint.name);
+    const std::string name = nameOf(rules, rules.joints, simulator.bodyName(body), joint.name);
     if (velocitySize(joint.type) != 1)
     {
       table.unsupported_joints.push_back(name);
@@ -43,24 +42,45 @@ void addJoints(const Simulator& simulator, int body, const std::map<std::string,
 
 }  // namespace
 
+NameRules nameRules(const Simulator& simulator, const std::set<std::string>& prefixed)
+{
+  NameRules rules;
+  rules.prefixed = prefixed;
+  if (simulator.bodyCount() > 0 && prefixed.count(simulator.bodyName(0)) == 0)
+    rules.first = simulator.bodyName(0);
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    if (prefixed.count(simulator.bodyName(body)) > 0)
+      continue;
+    for (const Frame& frame : simulator.model(body).frames)
+    {
+      ++rules.joints[frame.joint];  // fixed ones too
+      ++rules.links[frame.name];
+    }
+  }
+  return rules;
+}
+
 NameTable makeNameTable(const Simulator& simulator)
 {
+  return makeNameTable(simulator, nameRules(simulator));
+}
+
+NameTable makeNameTable(const Simulator& simulator, const NameRules& rules)
+{
   NameTable table;
-  const std::map<std::string, int> joint_count = countNames(simulator, &Frame::joint);
-  const std::map<std::string, int> link_count = countNames(simulator, &Frame::name);
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     const MultibodyModel& model = simulator.model(body);
     table.bodies.push_back(simulator.bodyName(body));
-    addJoints(simulator, body, joint_count, table);
+    addJoints(simulator, body, rules, table);
     std::vector<std::string> frames;
     std::vector<std::string> frame_joints;
-    const auto unique = [&](const std::map<std::string, int>& count, const std::string& name)
-    { return name.empty() || count.at(name) == 1 ? name : qualified(simulator.bodyName(body), name); };
     for (const Frame& frame : model.frames)
     {
-      frames.push_back(unique(link_count, frame.name));
-      frame_joints.push_back(unique(joint_count, frame.joint));
+      frames.push_back(nameOf(rules, rules.links, simulator.bodyName(body), frame.name));
+      frame_joints.push_back(
+          frame.joint.empty() ? "" : nameOf(rules, rules.joints, simulator.bodyName(body), frame.joint));
     }
     const int root = model.findFrame(model.links.front().name);
     table.roots.push_back(root >= 0 ? frames[root] : model.links.front().name);
@@ -77,6 +97,12 @@ std::string topicName(const std::string& urdf_name)
     if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '/')
       letter = '_';
   return name;
+}
+
+bool isTopicPart(const std::string& name)
+{
+  static const std::regex PART("[A-Za-z][A-Za-z0-9_]*");
+  return std::regex_match(name, PART);
 }
 
 int findJoint(const NameTable& table, const std::string& name)

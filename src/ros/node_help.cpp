@@ -10,6 +10,10 @@ const std::vector<ParameterHelp>& parameterHelp()
   static const std::vector<ParameterHelp> HELP = {
       {"scenario", "", "scenario file or a name in config/scenarios; robot_description is not used then"},
       {"robot_description", "", "URDF document; else robot_description of this namespace or one above"},
+      {"robots", "{}",
+       "{name: {description, pose, base, ...}}: robots beside the scenario's bodies; description: a URDF document or "
+       "the "
+       "name of a parameter; the keys of a scenario's body"},
       {"time_step", "0.001", "1e-9 to 1000 [s]; of a scenario: the file's unless set"},
       {"gravity", "[0, 0, -9.81]", "[m/s^2]; of a scenario: the file's unless set"},
       {"solver", "portfolio", "name of the registry: fclib_solve --list-solvers"},

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "frictional_contact_sim/config/nearest_name.h"
+#include "frictional_contact_sim/ros/names.h"
 #include "frictional_contact_sim/ros/parameter_tree.h"
 #include "frictional_contact_sim/simulation/scenario_files.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
@@ -22,14 +24,19 @@ void readPositions(const ConfigNode& node, BodySpec& body)
     body.joints[joint].position = position.number();
 }
 
-/** @brief What a scenario file would say of the robot of robot_description, and of what it meets. */
-ConfigKeys robotKeys(BodySpec& body, Scenario& scenario)
+/** @brief What a scenario file would say of the robot of robot_description. */
+ConfigKeys robotKeys(BodySpec& body)
 {
   return bodyKeys(body) +
          ConfigKeys{poseKey("base_pose", body), linkMaterialsKey("link_materials", body),
                     key(
-                        "initial_joint_positions", [&body](const ConfigNode& node) { readPositions(node, body); }),
-                    frictionKey("default_friction", scenario.materials.fallback.friction),
+                        "initial_joint_positions", [&body](const ConfigNode& node) { readPositions(node, body); })};
+}
+
+/** @brief And of what it meets. */
+ConfigKeys worldKeys(Scenario& scenario)
+{
+  return ConfigKeys{frictionKey("default_friction", scenario.materials.fallback.friction),
                     restitutionKey("default_restitution", scenario.materials.fallback.restitution)} +
          surroundingKeys(scenario);
 }
@@ -106,16 +113,47 @@ ConfigKeys nodeKeys(NodeParameters& parameters)
           key("seed", parameters.seed, 0)};
 }
 
-/** @brief Parameters of the robot of robot_description mean nothing beside a scenario file: say so by name. */
-ConfigKeys unusedKeys(NodeParameters& parameters)
+/** @brief Parameters that mean nothing beside what says it already: named in a warning. */
+ConfigKeys unusedKeys(const ConfigKeys& keys, const std::string& who, NodeParameters& parameters)
 {
-  BodySpec body;
   ConfigKeys unused;
-  for (const ConfigKey& one : robotKeys(body, parameters.scenario))
+  for (const ConfigKey& one : keys)
     if (one.name != "hold_initial_position")  // goes for all bodies
-      unused.push_back(key(one.name, [&parameters, name = one.name](const ConfigNode&)
-                           { parameters.warnings.push_back("~" + name + ": ignored, the scenario file says it"); }));
+      unused.push_back(key(one.name, [&parameters, who, name = one.name](const ConfigNode&)
+                           { parameters.warnings.push_back("~" + name + ": ignored, " + who + " says it"); }));
   return unused;
+}
+
+/** @brief ~robots: bodies beside those of the scenario file, with its keys of a body. */
+void readRobots(const ConfigNode& robots, const FindDescription& find, NodeParameters& parameters)
+{
+  Scenario& scenario = parameters.scenario;
+  for (const auto& [name, robot] : robots.entries())
+  {
+    if (!isTopicPart(name))
+      robot.fail("the name of a robot is a part of topics: expected a letter, then letters, digits and _");
+    for (const BodySpec& other : scenario.bodies)
+      if (other.name == name)
+        robot.fail("the scenario has a body of that name already");
+    BodySpec body;
+    body.name = name;
+    const auto read_description = [&body, &find](const ConfigNode& node)
+    {
+      try
+      {
+        body.urdf_xml = findDocument(node.anyText(), find);
+      }
+      catch (const ParameterError& error)
+      {
+        node.fail(error.what());
+      }
+    };
+    robot.readMap(bodyKeys(body) +
+                  ConfigKeys{required(key("description", read_description)), linkMaterialsKey("materials", body)});
+    checkMaterials(robot, "materials", body, scenario.materials);
+    scenario.bodies.push_back(body);
+    parameters.robots.insert(name);
+  }
 }
 
 ConfigKey holdKey(bool& hold)
@@ -128,7 +166,8 @@ ConfigKeys otherKeys(NodeParameters& parameters)
 {
   const auto known = [](const ConfigNode&) {};
   return numericKeys(parameters.scenario) + shortKeys(parameters.scenario) + fileKeys(parameters) +
-         nodeKeys(parameters) + ConfigKeys{key("scenario", known), key("robot_description", known)};
+         nodeKeys(parameters) +
+         ConfigKeys{key("scenario", known), key("robot_description", known), key("robots", known)};
 }
 }  // namespace
 
@@ -137,12 +176,25 @@ std::vector<std::string> parameterNames()
   NodeParameters parameters;
   BodySpec robot;
   std::vector<std::string> names;
-  for (const ConfigKey& one : robotKeys(robot, parameters.scenario) + otherKeys(parameters))
+  for (const ConfigKey& one : robotKeys(robot) + worldKeys(parameters.scenario) + otherKeys(parameters))
     names.push_back(one.name);
   return names;
 }
 
-NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description)
+std::string findDocument(const std::string& text, const FindDescription& find)
+{
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] == '<')
+    return text;
+  const std::string document = text.empty() || !find ? "" : find(text);
+  if (document.empty())
+    throw ParameterError("found '" + inOneLine(text, 80) +
+                         "', expected a URDF document or the name of a parameter that holds one");
+  return document;
+}
+
+NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description,
+                              const FindDescription& find_description)
 {
   NodeParameters parameters;
   Scenario& scenario = parameters.scenario;
@@ -154,7 +206,14 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   if (!file.empty())
   {
     scenario = loadScenarioFile(findScenario(file));
-    keys = unusedKeys(parameters) + ConfigKeys{holdKey(hold)};
+    keys =
+        unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + ConfigKeys{holdKey(hold)};
+  }
+  else if (root.has("robots"))
+  {
+    scenario.name = "robots";
+    scenario.ground = GroundSpec();
+    keys = worldKeys(scenario) + unusedKeys(robotKeys(robot), "~robots", parameters) + ConfigKeys{holdKey(hold)};
   }
   else if (!robot_description.empty())
   {
@@ -162,19 +221,22 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
     scenario.ground = GroundSpec();
     robot.name = "robot";
     robot.urdf_xml = robot_description;
-    keys = robotKeys(robot, scenario);
+    keys = robotKeys(robot) + worldKeys(scenario);
   }
   else
   {
-    throw ParameterError("robot_description: not set, and no ~scenario either: expected a URDF document or a file");
+    throw ParameterError(
+        "robot_description: not set, and no ~scenario or ~robots either: expected a URDF document or a file");
   }
   root.readMap(keys + otherKeys(parameters));
   checkSolver(root.at("solver_options"), scenario);
-  if (file.empty())
+  if (file.empty() && !root.has("robots"))
   {
     checkMaterials(root, "link_materials", robot, scenario.materials);
     scenario.bodies.push_back(robot);
   }
+  if (root.has("robots"))
+    readRobots(root.at("robots"), find_description, parameters);
   for (BodySpec& body : scenario.bodies)
     body.hold_initial_position = body.hold_initial_position || hold;
   return parameters;

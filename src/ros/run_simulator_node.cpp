@@ -13,17 +13,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/** @brief ~robot_description, else robot_description of this namespace or one above, else empty. */
-std::string findRobotDescription(ros::NodeHandle& node, ros::NodeHandle& private_node)
-{
-  XmlRpc::XmlRpcValue value;
-  std::string key;
-  const bool found = private_node.getParam("robot_description", value) ||
-                     (node.searchParam("robot_description", key) && node.getParam(key, value));
-  if (found && value.getType() != XmlRpc::XmlRpcValue::TypeString)
-    throw ParameterError("robot_description: expected a string with a URDF document");
-  return found ? static_cast<std::string>(value) : std::string();
-}
 
 int simulate(ros::NodeHandle& node)
 {
@@ -31,7 +20,9 @@ int simulate(ros::NodeHandle& node)
   Reconfiguration::forget();
   XmlRpc::XmlRpcValue tree;
   private_node.getParam(ros::this_node::getName(), tree);
-  NodeParameters parameters = readParameters(tree, findRobotDescription(node, private_node));
+  const FindDescription find = [&](const std::string& parameter)
+  { return findDescription(node, private_node, parameter); };
+  NodeParameters parameters = readParameters(tree, find("robot_description"), find);
   parameters.scenario.stopping.stop = &endRequested();
   for (const std::string& warning : parameters.warnings)
     ROS_WARN_STREAM(warning);

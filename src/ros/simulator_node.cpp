@@ -61,12 +61,15 @@ void serveCallbacks(double timeout)
 }  // namespace
 
 SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_node, const NodeParameters& parameters)
-  : parameters_(parameters)
+  : node_(node)
+  , private_node_(private_node)
+  , parameters_(parameters)
   , simulator_(parameters.scenario)
-  , names_(makeNameTable(simulator_))
-  , publisher_(node, private_node, simulator_, names_, parameters)
-  , delivery_(publisher_.dataTopics(),
-              publisher_.losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
+  , name_rules_(nameRules(simulator_, parameters.robots))
+  , names_(makeNameTable(simulator_, name_rules_))
+  , publisher_(std::make_unique<StepPublisher>(node, private_node, simulator_, names_, name_rules_, parameters))
+  , delivery_(publisher_->dataTopics(),
+              publisher_->losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
               parameters.hold_limit)
   , commands_(private_node, simulator_, names_, parameters.servo_gains)
   , frames_(simulator_, names_, true)
@@ -80,7 +83,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
 {
   awaited_topics_ = resolved(node, private_node, parameters.wait_for_subscribers);
   for (const std::string& topic : awaited_topics_)
-    publisher_.subscribers(topic);  // throws where it is none of this node's
+    publisher_->subscribers(topic);  // throws where it is none of this node's
   for (const std::string& warning : simulator_.warnings())
     ROS_WARN_STREAM(warning);
   if (parameters.publish_clock)
@@ -97,7 +100,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   lossless_nodes_ = node.subscribe<std_msgs::String>(LOSSLESS_NODES_TOPIC, 100,
                                                      [this](const std_msgs::String::ConstPtr& message)
                                                      { delivery_.addLosslessNode(message->data); });
-  publisher_.greetSubscribers(paused_);
+  publisher_->greetSubscribers(paused_);
   ROS_INFO_STREAM("loaded " << simulator_.scenario().name << " in " << simulator_.loadingSeconds() << " s, solver "
                             << simulator_.scenario().solver << (paused_ ? ", paused" : ""));
   if (judge("impact at the start") == Outcome::FAILED)
@@ -152,15 +155,16 @@ void SimulatorNode::advertiseServices()
   services_.add<std_srvs::SetBool>("set_paused", [this](const auto& request, auto&) { setPaused(request.data); });
   advertiseRequests();
   services_.add<Step>("step", [this](const auto& request, auto& response) { takeSteps(request, response); });
+  addWorldServices();
 }
 
 void SimulatorNode::setPaused(bool paused)
 {
   paused_ = paused;
-  publisher_.greetSubscribers(paused);
+  publisher_->greetSubscribers(paused);
   if (paused)
-    publisher_.publishRest();
-  publisher_.publishClock();
+    publisher_->publishRest();
+  publisher_->publishClock();
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
@@ -168,7 +172,7 @@ void SimulatorNode::reset()
 {
   simulator_.reset();
   if (paused_)
-    publisher_.publishState();
+    publisher_->publishState();
   if (judge("impact at the start") == Outcome::FAILED)
     outcome_ = Outcome::FAILED;
 }
@@ -176,10 +180,10 @@ void SimulatorNode::reset()
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
-  publisher_.restartStamps();
-  publisher_.publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
+  publisher_->restartStamps();
+  publisher_->publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
   if (paused_)
-    publisher_.publishState();
+    publisher_->publishState();
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
@@ -187,14 +191,14 @@ void SimulatorNode::resetTime()
 void SimulatorNode::showSetState()
 {
   if (paused_)
-    publisher_.publishState();
+    publisher_->publishState();
   pacer_.restart(simulator_.time(), wallSeconds());
 }
 
 /** @brief What depends on settings that have changed. */
 void SimulatorNode::followSettings(double real_time_factor)
 {
-  publisher_.setTimeStep(simulator_.scenario().time_step);
+  publisher_->setTimeStep(simulator_.scenario().time_step);
   if (real_time_factor != parameters_.real_time_factor)
     pacer_ = Pacer(real_time_factor);
   parameters_.real_time_factor = real_time_factor;
@@ -218,8 +222,8 @@ void SimulatorNode::takeSteps(const Step::Request& request, Step::Response& resp
     if (windowEnds())
       hold([] { ros::WallDuration(HOLD_PERIOD).sleep(); });  // no other call is served within this one
   }
-  publisher_.publishRest();
-  response.report = publisher_.report(pacer_.realTimeFactor());
+  publisher_->publishRest();
+  response.report = publisher_->report(pacer_.realTimeFactor());
   outcome_ = outcome == Outcome::PAUSED ? Outcome::GO_ON : outcome;
   if (done < request.n || outcome == Outcome::FAILED || outcome == Outcome::PAUSED)
     throw RequestError("stopped after " + std::to_string(done) + " of " + std::to_string(request.n) + " steps");
@@ -269,12 +273,12 @@ SimulatorNode::Outcome SimulatorNode::advance()
   diagnostics_.addStep(simulator_.report(), simulator_.outcome().converged(), wallSeconds() - start);
   if (!taken)
   {
-    publisher_.publishReport(pacer_.realTimeFactor());
+    publisher_->publishReport(pacer_.realTimeFactor());
     return judge("step " + std::to_string(simulator_.report().step));
   }
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
-  publisher_.publish(pacer_.realTimeFactor());
+  publisher_->publish(pacer_.realTimeFactor());
   return judge("step " + std::to_string(simulator_.report().step));
 }
 
@@ -300,7 +304,7 @@ bool SimulatorNode::subscribersStand()
 {
   // A topic named n times needs n subscribers.
   const auto stands = [this](const std::string& topic)
-  { return publisher_.subscribers(topic) >= std::count(awaited_topics_.begin(), awaited_topics_.end(), topic); };
+  { return publisher_->subscribers(topic) >= std::count(awaited_topics_.begin(), awaited_topics_.end(), topic); };
   return std::all_of(awaited_topics_.begin(), awaited_topics_.end(), stands);
 }
 
@@ -308,7 +312,7 @@ bool SimulatorNode::subscribersStand()
 void SimulatorNode::idle()
 {
   const double due = wallSeconds() + CLOCK_PERIOD;
-  publisher_.publishClock();
+  publisher_->publishClock();
   while (going() && (paused_ || waiting_) && outcome_ == Outcome::GO_ON && wallSeconds() < due)
   {
     serveCallbacks(IDLE_PERIOD);

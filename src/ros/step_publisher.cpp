@@ -42,7 +42,7 @@ ros::Publisher StepPublisher::advertise(ros::NodeHandle& node, const std::string
 }
 
 StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulator& simulator,
-                             const NameTable& names, const NodeParameters& parameters)
+                             const NameTable& names, const NameRules& rules, const NodeParameters& parameters)
   : simulator_(simulator)
   , names_(names)
   , state_divider_(parameters.publish_rate, simulator.scenario().time_step)
@@ -53,6 +53,7 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , marker_scale_(markerScale(simulator, parameters.force_scale))
   , body_markers_(simulator)
   , forces_(simulator)
+  , body_joints_(node, simulator, names, rules.prefixed, [this] { return greeting_ ? stamp_ : ros::Time(); })
 {
   joint_states_publisher_ = advertise(node, "joint_states", DATA_QUEUE, &StepPublisher::jointStates);
   contacts_publisher_ = advertise(private_node, "contacts", DATA_QUEUE, &StepPublisher::contacts);
@@ -61,7 +62,10 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
                   step_report_publisher_.getTopic()};
   odometry_.resize(simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
-    advertiseOdometry(private_node, body);
+    advertiseOdometry(private_node, body,
+                      simulator.bodyName(body) == rules.first ? "" : simulator.bodyName(body) + "/");
+  for (const ros::Publisher& publisher : body_joints_.publishers())
+    data_topics_.insert(publisher.getTopic());
   markers_publisher_ = advertise(private_node, "markers", LATEST_QUEUE, &StepPublisher::allMarkers);
   if (publish_clock_)
     clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", LATEST_QUEUE);
@@ -75,9 +79,8 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   publishStaticTransforms();
 }
 
-void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body)
+void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body, const std::string& prefix)
 {
-  const std::string prefix = body == 0 ? "" : simulator_.bodyName(body) + "/";
   odometry_publishers_.push_back(
       private_node.advertise<nav_msgs::Odometry>("ground_truth/" + prefix + "odom", DATA_QUEUE,
                                                  [this, body](const ros::SingleSubscriberPublisher& subscriber)
@@ -86,6 +89,22 @@ void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body)
                                                      subscriber.publish(odometry(body));
                                                  }));
   data_topics_.insert(odometry_publishers_.back().getTopic());
+}
+
+void StepPublisher::takeOver(StepPublisher& before)
+{
+  stamp_ = before.stamp_;
+  greeting_ = before.greeting_;
+  // Those who listen already are announced to the new publishers by roscpp as if they came now, and so greeted: with a
+  // stamp of its own, as in publishState.
+  if (greeting_)
+    stamp_ += ros::Duration(0, 1);
+  transforms_stamp_ = markers_stamp_ = stamp_;
+  if (!listened(markers_publisher_))
+    return;
+  markers_.markers.resize(1);
+  markers_.markers.front().action = visualization_msgs::Marker::DELETEALL;
+  markers_publisher_.publish(markers_);
 }
 
 void StepPublisher::greetSubscribers(bool on)
@@ -121,6 +140,8 @@ std::uint32_t StepPublisher::subscribers(const std::string& topic) const
   for (const ros::Publisher& publisher : odometry_publishers_)
     publishers.push_back(&publisher);
   for (const ros::Publisher& publisher : sensors_->publishers())
+    publishers.push_back(&publisher);
+  for (const ros::Publisher& publisher : body_joints_.publishers())
     publishers.push_back(&publisher);
   std::string known;
   for (const ros::Publisher* publisher : publishers)
@@ -207,6 +228,7 @@ void StepPublisher::publishJointsAndContacts()
 {
   if (listened(joint_states_publisher_))
     joint_states_publisher_.publish(jointStates());
+  body_joints_.publish(stamp_);
   if (listened(contacts_publisher_))
     contacts_publisher_.publish(contacts());
 }

@@ -79,7 +79,7 @@ void Simulator::Impl::storeReport()
   report.fclib_file = result.status == SolverStatus::CONVERGED ? "" : outcome.fclib_file;
 }
 
-/** Connected components of bodies through contacts with a nonempty row. */
+/** Connected components of bodies through contacts with a nonempty row, and welds. */
 int Simulator::Impl::countIslands()
 {
   island_of.reset(static_cast<int>(bodies.size()));
@@ -90,6 +90,9 @@ int Simulator::Impl::countIslands()
     if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
       island_of.unite(a, b);
   }
+  for (const Weld& weld : state.rows.welds)
+    if (weld.body_b >= 0 && bodies[weld.body_a].model.tree.nv > 0 && bodies[weld.body_b].model.tree.nv > 0)
+      island_of.unite(weld.body_a, weld.body_b);
   int islands = 0;
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
     islands += bodies[b].model.tree.nv > 0 && island_of.root(b) == b;

@@ -23,6 +23,32 @@ bool sameShape(const SimulationState& a, const SimulationState& b)
                     same_memory);
 }
 
+/** Of bodies and links that exist, and where they are not welded twice. */
+void checkWelds(const Simulator& simulator, const SimulationState& state)
+{
+  const auto check = [&](int body, int frame, bool may_be_world)
+  {
+    if (may_be_world && body == -1 && frame == -1)
+      return;
+    if (body < 0 || body >= simulator.bodyCount())
+      throw StateError("the body of a weld is " + std::to_string(body) + ", expected 0 to " +
+                       std::to_string(simulator.bodyCount() - 1));
+    const int frames = static_cast<int>(simulator.model(body).frames.size());
+    if (frame < 0 || frame >= frames)
+      throw StateError("the link of a weld is " + std::to_string(frame) + ", expected 0 to " +
+                       std::to_string(frames - 1));
+  };
+  for (const Weld& weld : state.rows.welds)
+  {
+    check(weld.body_a, weld.frame_a, false);
+    check(weld.body_b, weld.frame_b, true);
+    const Eigen::Matrix3d turn = weld.pose.linear();
+    if (!weld.pose.matrix().allFinite() || !weld.impulse.allFinite() || !(turn.transpose() * turn).isIdentity(1e-6) ||
+        turn.determinant() < 0.0)
+      throw StateError("the pose or impulse of a weld is not one");
+  }
+}
+
 /** A drive can follow a schedule only where the world has one. */
 void checkDrives(const WorldModel& world, const SimulationState& state)
 {
@@ -75,6 +101,8 @@ void Simulator::Impl::applyState()
   state.rows.contacts.clear();
   for (RowMemory& memory : state.rows.memory)
     std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
+  for (Weld& weld : state.rows.welds)
+    weld.impulse.setZero();
   for (BodyState& body : state.bodies)
     for (JointDrive& drive : body.drives)
       drive.effort = 0.0;
@@ -101,6 +129,7 @@ void Simulator::Impl::goBack(const SimulationState& before)
 {
   outcome.taken = false;
   state = before;
+  joinWelded();
   for (size_t b = 0; b < good.size(); ++b)
   {
     state.bodies[b].q = good[b].first;
@@ -179,8 +208,11 @@ void Simulator::Impl::finishImpact()
     assembly.setMeanVelocity(result.solution);
     assembly.book(context, result.solution, state.energy);
   }
-  for (Body& body : bodies)
-    body.state.v = result.solution.v.segment(body.v_offset, body.model.tree.nv);
+  // What no impulse touches keeps its velocity to the bit.
+  const std::vector<char>& acting = assembly.acting(result.solution);
+  for (size_t b = 0; b < bodies.size(); ++b)
+    if (stands || acting[b] != 0)
+      bodies[b].state.v = result.solution.v.segment(bodies[b].v_offset, bodies[b].model.tree.nv);
   updateEnds();
   bookEnergies();
   if (stands)
@@ -193,8 +225,10 @@ const StepOutcome& Simulator::setState(const SimulationState& state)
     throw StateError("the state's bodies or joints differ in number from the simulator's");
   checkNumbers(*this, state);
   checkDrives(*impl_->world, state);
+  checkWelds(*this, state);
   const double dt = impl_->state.dt;
   impl_->state = state;
+  impl_->joinWelded();
   impl_->updateEnds();
   impl_->rememberGood();
   if (state.dt != dt)

@@ -43,9 +43,14 @@ std::vector<Body> makeBodies(const WorldModel& world, SimulationState& state)
   return bodies;
 }
 
+std::shared_ptr<StepSolver> makeSolver(const Scenario& scenario)
+{
+  return std::make_shared<StepSolver>(createSolver(scenario.solver, scenario.solver_options), scenario.stopping,
+                                      scenario.failure);
+}
 }  // namespace
 
-Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model, std::shared_ptr<StepSolver> step_solver)
   : world(std::move(world_model))
   , scenario(world->scenario)
   , pairs(world->pairs)
@@ -55,7 +60,13 @@ Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
   , context(makeContext(scenario))
   , contact_set(bodies, collision, pairs, state.rows.contacts)
   , assembly(bodies, makeRowSources(bodies, collision, pairs, state.rows, &contact_set), state.rows)
-  , solver(createSolver(scenario.solver, scenario.solver_options), scenario.stopping, scenario.failure)
+  , solver_owner(std::move(step_solver))
+  , solver(*solver_owner)
+{
+}
+
+Simulator::Impl::Impl(std::shared_ptr<const WorldModel> world_model)
+  : Impl(world_model, makeSolver(world_model->scenario))
 {
   rememberGood();
   updateEnds();
@@ -129,6 +140,7 @@ const StepOutcome& Simulator::reset()
   state.energy = impl_->start.energy;
   state.energy_start = impl_->start.energy_start;
   state.scenario_clock = StepClock{};
+  impl_->joinWelded();
   impl_->updateEnds();
   impl_->rememberGood();
   impl_->restartReport();

@@ -21,6 +21,11 @@ StepContext makeContext(const Scenario& scenario);
 struct Simulator::Impl
 {
   explicit Impl(std::shared_ptr<const WorldModel> world_model);
+  /// Without an impact solve: what is to be taken over follows.
+  Impl(std::shared_ptr<const WorldModel> world_model, std::shared_ptr<StepSolver> step_solver);
+  void takeOver(const Impl& old, const std::vector<int>& new_body);
+  void bookArrival(int body, double sign, const Impl& of);
+  bool checkPlace(int body);
 
   // the step, in this order
   void moveToMidpoint();
@@ -43,6 +48,8 @@ struct Simulator::Impl
   int countIslands();
 
   void applyState();
+  void weld(const Weld& weld);
+  void joinWelded();  ///< tells the collision world which shapes are one rigid thing, after the list of welds changed
   const Body* findNotFinite() const;
   void goBack(const SimulationState& before);
   void setStart();
@@ -67,7 +74,8 @@ struct Simulator::Impl
   StepContext context;
   ContactSet contact_set;
   StepAssembly assembly;
-  StepSolver solver;
+  std::shared_ptr<StepSolver> solver_owner;  ///< when bodies come and go, both worlds for a moment
+  StepSolver& solver;
   std::string dump_folder;
   int dumps_left = 0;
   std::string dump_name;  ///< folder and name that no other simulator of this process uses

@@ -67,28 +67,27 @@ MassDistribution fillLink(const WorldModel& world, int body, int link)
 }
 }  // namespace
 
-std::vector<std::string> findBuriedStarts(const WorldModel& world)
+std::vector<std::string> findOverlaps(const WorldModel& world, CollisionWorld collision, int body)
 {
-  CollisionWorld collision = world.collision;
   std::map<std::pair<Side, Side>, double> depths;  // in the order of the scene
   for (const ContactPoint& point : collision.detect(0.0))
   {
     const Side a = sideOf(collision.shape(point.shape_a));
     const Side b = sideOf(collision.shape(point.shape_b));
-    if (a[0] == b[0] || -point.gap <= RESTING_SHARE * smallerRadius(collision, point))
+    const bool concerns = body < 0 || a[0] == body || b[0] == body;
+    if (!concerns || a[0] == b[0] || -point.gap <= RESTING_SHARE * smallerRadius(collision, point))
       continue;
     double& depth = depths[{a, b}];
     depth = std::max(depth, -point.gap);
   }
-  std::vector<std::string> warnings;
+  std::vector<std::string> lines;
   for (const auto& [pair, depth] : depths)
   {
     std::ostringstream text;
-    text << describe(world, pair.first) << " starts " << depth << " m deep in " << describe(world, pair.second)
-         << ": it is let out slowly";
-    warnings.push_back(text.str());
+    text << describe(world, pair.first) << " starts " << depth << " m deep in " << describe(world, pair.second);
+    lines.push_back(text.str());
   }
-  return warnings;
+  return lines;
 }
 
 std::vector<std::string> findImplausibleInertia(const WorldModel& world, int body)

@@ -11,10 +11,12 @@
 namespace frictional_contact_sim
 {
 /**
- * @brief A line for each pair of links of different bodies, or link and ground, that overlap at the start: both sides
- * and the depth. Less than a thousandth of the smaller shape's radius is a resting contact.
+ * @brief A line for each pair of links of different bodies, or link and ground, that overlap: both sides and the depth.
+ * Less than a thousandth of the smaller shape's radius is a resting contact.
+ * @param collision the world's, with poses
+ * @param body that is one of the two; -1: any
  */
-std::vector<std::string> findBuriedStarts(const WorldModel& world);
+std::vector<std::string> findOverlaps(const WorldModel& world, CollisionWorld collision, int body = -1);
 
 /**
  * @brief A line for each link whose moments of inertia cannot be those of its mass in its collision shapes: their sum

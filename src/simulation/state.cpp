@@ -78,6 +78,16 @@ void visit(StateArchive& archive, ContactState& contact)
   archive.number("contact.cone_margin", contact.cone_margin);
 }
 
+void visit(StateArchive& archive, Weld& weld)
+{
+  archive.index("weld.body_a", weld.body_a);
+  archive.index("weld.frame_a", weld.frame_a);
+  archive.index("weld.body_b", weld.body_b);
+  archive.index("weld.frame_b", weld.frame_b);
+  archive.vector("weld.pose", weld.pose.matrix());
+  archive.vector("weld.impulse", weld.impulse);
+}
+
 void visit(StateArchive& archive, EnergyLedger& energy)
 {
   archive.number("energy.kinetic", energy.kinetic);
@@ -104,6 +114,7 @@ public:
     for (const char letter : value)
       hash_.add(std::uint64_t{static_cast<unsigned char>(letter)});
   }
+  bool skipsEmptyNewLists() const override { return true; }
   std::uint64_t value() const { return hash_.value(); }
 
 private:
@@ -153,6 +164,9 @@ void visitState(StateArchive& archive, SimulationState& state)
       archive.number(memory.name, impulse);
   visit(archive, state.energy);
   archive.number("energy_start", state.energy_start);
+  if (!state.rows.welds.empty() || !archive.skipsEmptyNewLists())
+    for (Weld& weld : archive.list("welds", state.rows.welds))
+      visit(archive, weld);
 }
 
 std::uint64_t hashOf(const SimulationState& state)

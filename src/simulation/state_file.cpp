@@ -16,7 +16,7 @@ namespace frictional_contact_sim
 namespace
 {
 const std::string MAGIC = "FCSSTATE";
-constexpr std::uint64_t VERSION = 2;  ///< 2: wide contact ids
+constexpr std::uint64_t VERSION = 3;  ///< 2: wide contact ids, 3: welds
 constexpr size_t HEADER = 8 + 4 + 8 + 8;  ///< bytes
 
 void append(std::string& bytes, std::uint64_t value, int width)

@@ -264,6 +264,8 @@ void RunAudit::checkWeight()
       held = true;  // by other things than contacts
     mass += model.nv > 0 ? model.totalMass() : 0.0;
   }
+  for (const Weld& weld : simulator_.welds())
+    held = held || weld.body_b < 0 || simulator_.model(weld.body_b).nv == 0;
   if (held)
   {
     weighed_ = 0;
@@ -304,6 +306,11 @@ void RunAudit::checkMomentum()
                             (simulator_.shape(contact.shape_b).body == body ? 1.0 : 0.0);
         impulse += sign * contact.impulse;
         scale += contact.impulse.norm();
+      }
+      for (const Weld& weld : simulator_.welds())
+      {
+        impulse += ((weld.body_a == body ? 1.0 : 0.0) - (weld.body_b == body ? 1.0 : 0.0)) * weld.impulse.head<3>();
+        scale += weld.impulse.head<3>().norm();
       }
       Eigen::Vector3d change = Eigen::Vector3d::Zero();
       for (int row = 0; row < 3; ++row)

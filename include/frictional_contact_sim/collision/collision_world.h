@@ -78,6 +78,11 @@ public:
   /** @brief Adds a shape fixed in the world, the ground plane for example. @return shape handle */
   int addStatic(const Geometry& geometry, const Eigen::Isometry3d& pose, const std::string& name);
 
+  /** @brief Static shapes get the last handles, as in a world where they were added last. */
+  void putStaticLast();
+  /** @brief Bodies behind it and their shapes move up; a number may mean another one then. */
+  void removeBody(int body);
+
   /** @brief Two links of a body never collide. @throws std::invalid_argument naming an unknown link */
   void disablePair(int body, const std::string& link_1, const std::string& link_2);
 
@@ -88,14 +93,21 @@ public:
    * @brief Disables the pairs of links *within one body* that overlap now (initial pose; gap < -1e-9 m, so links that
    * only touch still collide), and those of a body on a fixed base with static shapes: what is mounted in the ground
    * can never leave it. Needs setPoses.
+   * @param body that is looked at; -1: all
    * @return "link_1 - link_2" of each pair disabled
    */
-  std::vector<std::string> disableOverlaps();
+  std::vector<std::string> disableOverlaps(int body = -1);
 
   /** @brief Link poses of a body, from its data. */
   void setPoses(int body, const MultibodyData& data);
   /** @brief The same for one link. */
   void setLinkPose(int body, int link, const Eigen::Isometry3d& pose);
+
+  /**
+   * @brief Shapes that do not move against each other do not collide: of each shape the number of its set, none in any
+   * where the list is empty. Belongs to this world alone, as poses do.
+   */
+  void setRigidSets(std::vector<int> set_of_shape);
 
   /** @brief Who looks for near pairs; the points are the same. Copies have it too. */
   void setBroadPhase(BroadPhaseKind kind);

@@ -65,6 +65,8 @@ public:
   /** @brief Free links without an impulse in `solution`, finite, get their free motion without the solve's round-off.
    */
   void settleFreeLinks(Solution& solution);
+  /** @brief Bodies, by index: whether an impulse of `solution` acts on it. */
+  const std::vector<char>& acting(const Solution& solution);
   /** @brief Name of the rows that said anything but NO last. */
   const char* unsatisfied() const { return unsatisfied_; }
   /** @brief Sets the bodies' v_middle to the mean of old and new velocity. */

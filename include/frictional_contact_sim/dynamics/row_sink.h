@@ -65,7 +65,8 @@ public:
   const std::vector<double>& auxiliaryMass() const { return auxiliary_mass_; }
   const RowBuilder& h() const { return h_; }
   const RowBuilder& g() const { return g_; }
-  /** @brief H, w, laws, G, b of `problem`; an impact has b = 0 (the position error is the next step's). */
+  /** @brief H, w, laws, G, b of `problem`; an impact has of b the moving bases alone (the position
+   * error is the next step's). */
   void copyTo(bool impact, IncrementalProblem& problem) const;
 
 private:

@@ -2,7 +2,7 @@
 /**
  * @file row_source.h
  * @brief What every kind of row offers to the assembly of a step: contacts, joint limits, dry friction, servos, mimic
- * joints and the creep law are one class each, in one file pair; a new kind is a new class and a line in
+ * joints, welds and the creep law are one class each, in one file pair; a new kind is a new class and a line in
  * row_sources.cpp.
  *
  * A source adds its rows to a RowSink, which keeps them in the order they come: contacts, then joint by joint. What a
@@ -19,6 +19,7 @@
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/row_sink.h"
+#include "frictional_contact_sim/dynamics/weld.h"
 #include "frictional_contact_sim/model/kinematics.h"
 
 namespace frictional_contact_sim
@@ -55,6 +56,7 @@ struct RowState
 {
   std::vector<ContactState> contacts;  ///< of the last step, ordered by shapes and feature
   std::vector<RowMemory> memory;  ///< one a source that keeps impulses
+  std::vector<Weld> welds;  ///< links that are joined now
 };
 
 /** @brief RowMemory of a source with so many impulses a joint. */

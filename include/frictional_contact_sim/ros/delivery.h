@@ -38,6 +38,8 @@ public:
   DeliveryMonitor(const DeliveryMonitor&) = delete;
   DeliveryMonitor& operator=(const DeliveryMonitor&) = delete;
 
+  /** @brief From now on these are looked at. */
+  void setTopics(std::set<std::string> topics) { topics_ = std::move(topics); }
   /** @brief From now on this node must get every message of what it subscribes to. */
   void addLosslessNode(const std::string& node);
   /** @brief Returns when roscpp's own thread has handed to the connections what was published up to now. */

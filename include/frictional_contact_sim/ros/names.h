@@ -2,8 +2,11 @@
 /**
  * @file names.h
  * @brief How joints and links of a scenario are called on ROS topics: by their URDF name while it is unique among all
- * bodies of the scenario, else `body/name`.
+ * bodies of the scenario, else `body/name`. Robots of ~robots and bodies that were spawned are always `body/name`: that
+ * is the tf_prefix of a robot_state_publisher of their own.
  */
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,10 +37,24 @@ struct NameTable
   std::vector<std::string> unsupported_joints;  ///< planar and floating joints: no place in sensor_msgs/JointState
 };
 
+/** @brief What decides between `name` and `body/name`. Made at the start: names stay while bodies come and go. */
+struct NameRules
+{
+  std::set<std::string> prefixed;  ///< bodies that are always `body/name`
+  std::string first;  ///< the body whose odometry has no name in its topic; may be empty
+  std::map<std::string, int> joints;  ///< how often each URDF name occurs among the other bodies
+  std::map<std::string, int> links;
+};
+
+NameRules nameRules(const Simulator& simulator, const std::set<std::string>& prefixed = {});
+NameTable makeNameTable(const Simulator& simulator, const NameRules& rules);
+/** @brief Of the start, no body prefixed. */
 NameTable makeNameTable(const Simulator& simulator);
 
 /** @brief A URDF name as a part of a topic: what ROS does not take there becomes `_`. */
 std::string topicName(const std::string& urdf_name);
+/** @brief A name that can be part of a topic's: a letter, then letters, digits and _. */
+bool isTopicPart(const std::string& name);
 
 /** @return index into table.joints, -1 when unknown; `body/joint` is always understood. */
 int findJoint(const NameTable& table, const std::string& name);

@@ -4,8 +4,10 @@
  * @brief The node's private parameters as one struct; a pure function reads and checks them (docs/interfaces.md).
  */
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct ServoGains
 struct NodeParameters
 {
   Scenario scenario;  ///< of ~scenario, or made from robot_description and the parameters; what they override is in it
+  std::set<std::string> robots;  ///< names of the bodies that come from ~robots
   double real_time_factor = 1.0;  ///< simulated over wall-clock time; 0 = as fast as possible
   double publish_rate = 0.0;  ///< of joint_states, contacts, step_report, odometry; 0 = every step [1/s simulated]
   double clock_rate = 0.0;  ///< of /clock; 0 = every step [1/s simulated]
@@ -53,12 +56,23 @@ struct NodeParameters
   std::vector<std::string> warnings;  ///< unknown or unused parameters, one line each
 };
 
+/** @brief The text of a parameter, searched from the node's namespace upwards; empty when there is none. */
+using FindDescription = std::function<std::string(const std::string& parameter)>;
+
+/**
+ * @brief The document itself where `text` begins with `<`, else that of the parameter it names.
+ * @throws ParameterError when there is none
+ */
+std::string findDocument(const std::string& text, const FindDescription& find);
+
 /**
  * @param tree content of the node's private namespace (a struct; anything else counts as empty)
  * @param robot_description the URDF document, empty when there is none
+ * @param find_description of parameters that ~robots names
  * @throws ParameterError, ScenarioError
  */
-NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description);
+NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string& robot_description,
+                              const FindDescription& find_description = nullptr);
 
 /** @brief All private parameters that readParameters reads. */
 std::vector<std::string> parameterNames();

@@ -28,6 +28,11 @@
 
 namespace frictional_contact_sim
 {
+/** @brief Text of ~parameter, else of the parameter in this namespace or one above, else empty.
+ *  @throws ParameterError when it is not a text */
+std::string findDescription(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                            const std::string& parameter);
+
 class SimulatorNode
 {
 public:
@@ -50,6 +55,8 @@ private:
   void advertiseRequests();
   void setServoGains();
   RunState runState() const;
+  void addWorldServices();
+  void changeBodies(const std::function<void()>& change);
 
   Outcome advance();
   Outcome judge(const std::string& where);
@@ -66,10 +73,13 @@ private:
   void followSettings(double real_time_factor);
   void takeSteps(const Step::Request& request, Step::Response& response);
 
+  ros::NodeHandle node_;
+  ros::NodeHandle private_node_;
   NodeParameters parameters_;
   Simulator simulator_;
+  NameRules name_rules_;
   NameTable names_;
-  StepPublisher publisher_;
+  std::unique_ptr<StepPublisher> publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
   FrameResolver frames_;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/ros/body_joint_publisher.h"
 #include "frictional_contact_sim/ros/body_markers.h"
 #include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/link_publisher.h"
@@ -29,7 +30,11 @@ class StepPublisher
 {
 public:
   StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_node, const Simulator& simulator,
-                const NameTable& names, const NodeParameters& parameters);
+                const NameTable& names, const NameRules& rules, const NodeParameters& parameters);
+  StepPublisher(const StepPublisher&) = delete;
+  StepPublisher& operator=(const StepPublisher&) = delete;
+  /** @brief The bodies are others, and this takes the place of `before`: stamps go on, old pictures are deleted. */
+  void takeOver(StepPublisher& before);
 
   /** @brief What is due of the step just taken. */
   void publish(double real_time_factor);
@@ -62,7 +67,7 @@ private:
   template <typename Message>
   ros::Publisher advertise(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue,
                            const Message& (StepPublisher::*fill)());
-  void advertiseOdometry(ros::NodeHandle& private_node, int body);
+  void advertiseOdometry(ros::NodeHandle& private_node, int body, const std::string& prefix);
   const sensor_msgs::JointState& jointStates();
   const ContactArray& contacts();
   const nav_msgs::Odometry& odometry(int body);
@@ -111,6 +116,7 @@ private:
   visualization_msgs::MarkerArray markers_;
   rosgraph_msgs::Clock clock_;
   tf2_msgs::TFMessage transforms_;
+  BodyJointPublisher body_joints_;
 };
 
 }  // namespace frictional_contact_sim

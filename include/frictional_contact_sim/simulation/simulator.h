@@ -23,6 +23,13 @@
 
 namespace frictional_contact_sim
 {
+/** @brief A URDF link of a body by its index; body -1 is the world, whatever the name. */
+struct LinkRef
+{
+  int body = -1;
+  std::string link;
+};
+
 class Simulator
 {
 public:
@@ -82,11 +89,12 @@ public:
   int shapeCount() const;
   double time() const;
   const Scenario& scenario() const;
-  const std::vector<std::string>& warnings() const;  ///< from loading, one line each
+  const std::vector<std::string>& warnings() const;  ///< from loading, one line each; after a spawn the new body's
   double loadingSeconds() const;
 
   int bodyCount() const;  ///< in the order of the scenario
   const std::string& bodyName(int body) const;
+  int findBody(const std::string& name) const;  ///< -1 where there is none
   const MultibodyModel& model(int body) const;
   const MultibodyData& data(int body) const;  ///< poses and velocities at the end of the step
   const Body& workspace(int body) const;  ///< of the last step: its midpoint, the velocity it started from
@@ -119,6 +127,40 @@ public:
   void clearWrenches();
   /** @brief Of one body. @param frame of its model, -1 = all */
   void clearWrenches(int body, int frame = -1);
+
+  /**
+   * @brief Welds two links where they are: from now on they do not move against each other, nor collide. Their
+   * velocities become one by an inelastic impact; the energy it takes is booked as impact. Where that has no answer
+   * the failure policy says what is left, as after stateChanged().
+   * @param a_in_b pose of link a in link b (or the world) that they shall have, at most 1 mm and 1 mrad from what they
+   * have: closed at 0.1 m/s and 1 rad/s at most
+   * @throws std::invalid_argument for an unknown link, two links that are rigidly joined already, two that cannot move,
+   * a pose that is too far away; nothing has changed then
+   */
+  const StepOutcome& attach(const LinkRef& a, const LinkRef& b,
+                            const std::optional<Eigen::Isometry3d>& a_in_b = std::nullopt);
+  /** @brief Ends a weld, in whatever order its links are named. @throws std::invalid_argument when they are not welded
+   */
+  const StepOutcome& detach(const LinkRef& a, const LinkRef& b);
+  const std::vector<Weld>& welds() const;  ///< in the order they were made
+  /** @brief Mean force and torque (about the origin of link a) on link a over the last step, world axes [N, N m]. */
+  Vector6d weldWrench(int weld) const;
+
+  /**
+   * @brief One body more, the last, at the pose and velocities of `spec`, which are also those a reset takes it to.
+   * Clocks, the other bodies, their welds and warm starts go on to the bit. Where it touches something that it runs
+   * into, the impact is solved; without an answer there outcome().taken says whether the body is there. What
+   * references got from this simulator before is void.
+   * @throws as the constructor, and std::invalid_argument for a name that is taken, or a place where it is inside
+   * another body or the ground (deeper than a thousandth of the smaller shape): who adds a body to a world that moves
+   * has to hear of it, he cannot look first. Nothing has changed then
+   */
+  const StepOutcome& spawn(const BodySpec& spec);
+  /**
+   * @brief Takes a body out, with its contacts and welds. The others go on; bodies behind it get the number before
+   * theirs. @throws std::invalid_argument for an unknown name
+   */
+  void remove(const std::string& name);
 
   /** @throws std::invalid_argument listing the valid names */
   void setSolver(const std::string& name);

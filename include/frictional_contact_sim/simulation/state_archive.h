@@ -29,6 +29,9 @@ public:
   virtual void integer(const std::string& name, std::uint64_t& value) = 0;
   virtual void text(const std::string& name, std::string& value) = 0;
 
+  /** @brief Lists that states have not always had leave no trace where they are empty: hashes stay what they were. */
+  virtual bool skipsEmptyNewLists() const { return false; }
+
   void index(const std::string& name, int& value)
   {
     auto bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(value));

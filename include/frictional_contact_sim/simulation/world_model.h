@@ -30,4 +30,14 @@ struct WorldModel
 /** @throws ModelError, ScenarioError, std::invalid_argument with one line that names the body and what is wrong */
 std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario);
 
+/**
+ * @brief `world` and one body more, the last; only that is loaded, meshes that are known are not read again. Warnings
+ * are the new body's. Whether it overlaps others is for those to ask who know where they are now.
+ * @param scenario the world's, with what has been changed since
+ * @throws as loadWorldModel
+ */
+std::shared_ptr<const WorldModel> withBody(const WorldModel& world, const Scenario& scenario, const BodySpec& spec);
+/** @brief `world` without a body; those behind it and their shapes move up. */
+std::shared_ptr<const WorldModel> withoutBody(const WorldModel& world, const Scenario& scenario, int body);
+
 }  // namespace frictional_contact_sim
