@@ -49,6 +49,7 @@ void readServoGains(const ConfigNode& node, std::map<std::string, ServoGains>& s
   {
     ServoGains& target = servo_gains[joint];
     gains.readMap({key("kp", target.kp, notNegative()), key("kd", target.kd, notNegative()),
+                   key("velocity_gain", target.velocity_gain, notNegative()),
                    key("max_effort", target.max_effort, notNegative())});
   }
 }
@@ -111,15 +112,17 @@ ConfigKeys unusedKeys(NodeParameters& parameters)
   BodySpec body;
   ConfigKeys unused;
   for (const ConfigKey& one : robotKeys(body, parameters.scenario))
-    if (one.name != "hold_initial_position")  // goes for all bodies
+    if (one.name != "hold_initial_position" && one.name != "gravity_compensation")  // go for all bodies
       unused.push_back(key(one.name, [&parameters, name = one.name](const ConfigNode&)
                            { parameters.warnings.push_back("~" + name + ": ignored, the scenario file says it"); }));
   return unused;
 }
 
-ConfigKey holdKey(bool& hold)
+/** @brief What makes servos of all bodies, whatever the scenario file says of each. */
+ConfigKeys servoKeys(BodySpec& all)
 {
-  return key("hold_initial_position", hold);
+  return {key("hold_initial_position", all.hold_initial_position),
+          key("gravity_compensation", all.gravity_compensation)};
 }
 
 /** @brief All that are not the robot's. */
@@ -148,12 +151,12 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   const ConfigNode root = parameterTree(tree, &parameters.warnings);
   const std::string file = root.has("scenario") ? root.at("scenario").anyText() : "";
   BodySpec robot;
-  bool hold = false;
+  BodySpec all;
   ConfigKeys keys;
   if (!file.empty())
   {
     scenario = loadScenarioFile(findScenario(file));
-    keys = unusedKeys(parameters) + ConfigKeys{holdKey(hold)};
+    keys = unusedKeys(parameters) + servoKeys(all);
   }
   else if (!robot_description.empty())
   {
@@ -175,7 +178,10 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
     scenario.bodies.push_back(robot);
   }
   for (BodySpec& body : scenario.bodies)
-    body.hold_initial_position = body.hold_initial_position || hold;
+  {
+    body.hold_initial_position = body.hold_initial_position || all.hold_initial_position;
+    body.gravity_compensation = body.gravity_compensation || all.gravity_compensation;
+  }
   return parameters;
 }
 

@@ -66,7 +66,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , delivery_(publisher_.dataTopics(),
               publisher_.losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
               parameters.hold_limit)
-  , commands_(private_node, simulator_, names_, parameters.servo_gains)
+  , commands_(private_node, simulator_, names_, parameters_.servo_gains)
+  , trajectories_(private_node, simulator_, names_, parameters_.servo_gains)
   , pacer_(parameters.real_time_factor)
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
   , paused_(parameters.start_paused)
@@ -165,6 +166,8 @@ void SimulatorNode::setPaused(bool paused)
 void SimulatorNode::reset()
 {
   simulator_.reset();
+  commands_.forgetPending();
+  trajectories_.update();
   if (paused_)
     publisher_.publishState();
   if (judge("impact at the start") == Outcome::FAILED)
@@ -174,6 +177,7 @@ void SimulatorNode::reset()
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
+  commands_.forgetPending();
   publisher_.restartStamps();
   if (paused_)
     publisher_.publishState();
@@ -256,6 +260,7 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 /** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
+  commands_.giveDue();
   if (!simulator_.step().taken)
   {
     publisher_.publishReport(pacer_.realTimeFactor());
@@ -264,6 +269,7 @@ SimulatorNode::Outcome SimulatorNode::advance()
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_.publish(pacer_.realTimeFactor());
+  trajectories_.update();
   return judge("step " + std::to_string(simulator_.report().step));
 }
 

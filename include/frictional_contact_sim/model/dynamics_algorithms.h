@@ -32,6 +32,10 @@ void solveMassMatrix(const MultibodyModel& model, const MultibodyData& data, Vec
 void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eigen::Vector3d& gravity,
                        MultibodyData& data, VectorOut bias);
 
+/** @brief Gravity's part of the bias forces (nv): what holds the links at rest. Needs forwardKinematics. */
+void computeGravityForces(const MultibodyModel& model, const Eigen::Vector3d& gravity, MultibodyData& data,
+                          VectorOut forces);
+
 /** @brief Adds J^T (force; torque) of a wrench at a link-fixed point to tau (nv). World axes, [N], [N m]. */
 void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,
                const Eigen::Vector3d& force, const Eigen::Vector3d& torque, VectorOut tau);

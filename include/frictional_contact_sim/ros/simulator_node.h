@@ -19,6 +19,7 @@
 #include "frictional_contact_sim/ros/pacer.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
+#include "frictional_contact_sim/ros/trajectory_server.h"
 
 namespace frictional_contact_sim
 {
@@ -62,6 +63,7 @@ private:
   StepPublisher publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
+  TrajectoryServer trajectories_;
   Pacer pacer_;
   Throttle failure_lines_;
   int dumps_ = 0;
