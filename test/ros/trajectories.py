@@ -78,7 +78,7 @@ class TrajectoriesTest(unittest.TestCase):
         state = self.arm.step(20)
         self.assertAlmostEqual(speed, value(state, "velocity", "yaw"), delta=0.2 * speed)
         self.expect_at(self.arm.step(480), 0.2, 1.2, 1e-2)  # the cubic ends at 10 rad/s^2; the other joint has gone on
-        self.expect_at(self.arm.step(300), 0.2, 1.2, 1e-6)
+        self.expect_at(self.arm.step(300), 0.2, 1.2, 1e-5)
         # Straight lines where positions are all that is given; a message without points stops them.
         self.arm.give("command/trajectory", trajectory(point(1.0, [0.4, 1.4])))
         self.arm.step(400)

@@ -170,6 +170,29 @@ TEST(ServoTest, ASaturatedServoOfARobotAtRestIsSolved)
   EXPECT_NEAR(simulator.position(0)[0], 2.0, 1e-6);
 }
 
+TEST(GravityCompensationTest, AnArmAtRestThatIsHitIsSolved)
+{
+  Scenario scene = groundScene(0.5);
+  scene.stopping.tolerance = 1e-8;
+  BodySpec body;
+  body.name = "arm";
+  body.urdf_path = std::string(PROJECT_DIR) + "/urdf/arm.urdf";
+  body.base = BaseType::FIXED;
+  body.joints = {{"yaw", {0.2, 0.0}}, {"shoulder", {-0.7, 0.0}}, {"elbow", {1.7, 0.0}}, {"left_finger", {0.03, 0.0}}};
+  body.hold_initial_position = true;
+  body.gravity_compensation = true;
+  scene.bodies.push_back(body);
+  addBody(scene, "part", boxUrdf(Eigen::Vector3d::Constant(0.05), 0.2), poseAt(0.2, 0.04, 0.9));
+  Simulator simulator(scene);
+  double fastest = 0.0;
+  for (int step = 0; step < 500; ++step)
+  {
+    ASSERT_TRUE(simulator.step().converged()) << step << ": " << simulator.outcome().message;
+    fastest = std::max(fastest, simulator.velocity(0).cwiseAbs().maxCoeff());
+  }
+  EXPECT_GT(fastest, 1e-2) << "the part falls onto the upper arm";
+}
+
 TEST(GravityCompensationTest, AnArmHoldsWithoutDroop)
 {
   Scenario scene;
