@@ -37,7 +37,7 @@ PRIVATE = {
 CPP_ONLY = {"fcl", "urdf_parser", "urdf_model", "urdf_world", "urdf"}  # rule 10 of docs/architecture.md: not in private headers either
 ROS = {"ros", "std_msgs", "std_srvs", "sensor_msgs", "geometry_msgs", "nav_msgs", "visualization_msgs", "rosgraph_msgs",
        "tf2_msgs", "trajectory_msgs", "diagnostic_msgs", "xmlrpcpp", "XmlRpcValue.h", "XmlRpcClient.h", "XmlRpc.h",
-       "rosbag", "topic_tools", "diagnostic_updater", "tf2_ros", "tf2", "dynamic_reconfigure", "boost"}  # boost: only where roscpp hands it out
+       "rosbag", "topic_tools", "actionlib", "actionlib_msgs", "diagnostic_updater", "tf2_ros", "tf2", "dynamic_reconfigure", "boost"}  # boost: only where roscpp hands it out
 TOOL_HEADERS = {"CLI", "nlohmann", "nlohmann_json"}
 POSIX = {"unistd.h", "sys", "fcntl.h", "signal.h", "cxxabi.h", "dlfcn.h"}
 TEST_HEADERS = {"gtest", "gmock", "benchmark", "support"}

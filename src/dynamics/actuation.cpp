@@ -4,18 +4,18 @@
 
 namespace frictional_contact_sim
 {
-ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt, double rate)
+ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt)
 {
-  const double drag = rate == 0.0 ? 0.0 : dt * command.kd * rate;
   switch (command.mode)
   {
     case JointCommand::Mode::EFFORT:
       return {dt * command.target, 0.0};
     case JointCommand::Mode::POSITION:
-      return {dt * command.kp * (command.target - q - 0.25 * dt * v) + drag,
+      return {dt * command.kp * (command.target - q - 0.25 * dt * v) + dt * command.kd * command.rate +
+                  dt * command.feedforward,
               0.25 * dt * dt * command.kp + dt * command.kd};
     case JointCommand::Mode::VELOCITY:
-      return {dt * command.kd * command.target, dt * command.kd};
+      return {dt * command.kd * command.target + dt * command.feedforward, dt * command.kd};
   }
   return {};
 }

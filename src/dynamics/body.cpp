@@ -332,17 +332,35 @@ JointCommand commandAt(const Body& body, int joint, double middle)
 {
   const JointDrive& drive = body.state.drives[joint];
   JointCommand command = drive.command;
-  if (!drive.is_scheduled)
-    return command;
-  command.target = body.model.schedules[joint].target(middle);
-  if (command.mode == JointCommand::Mode::EFFORT)
-    command.target = std::clamp(command.target, -drive.effort_limit, drive.effort_limit);
+  if (drive.is_scheduled)
+  {
+    command.target = body.model.schedules[joint].target(middle);
+    command.rate = body.model.schedules[joint].rate(middle);
+    if (command.mode == JointCommand::Mode::EFFORT)
+      command.target = std::clamp(command.target, -drive.effort_limit, drive.effort_limit);
+  }
+  else if (!drive.trajectory.empty())
+  {
+    const Joint& moved = body.model.tree.joints[joint];
+    const JointMotion desired = drive.trajectory.at(middle);
+    command.target = reachableTarget(moved.limit, body.state.q[moved.q_index], desired.position);
+    command.rate = reachableSpeed(moved.limit, desired.velocity);
+  }
   return command;
 }
 
-double commandRate(const Body& body, int joint, double middle)
+double reachableTarget(const JointLimit& limit, double position, double target)
 {
-  return body.state.drives[joint].is_scheduled ? body.model.schedules[joint].rate(middle) : 0.0;
+  // A joint beyond its limits may still be sent back to them.
+  const double lower = std::min(std::max(limit.lower, position - MAX_TRAVEL), limit.upper);
+  const double upper = std::max(std::min(limit.upper, position + MAX_TRAVEL), limit.lower);
+  return std::clamp(target, lower, upper);
+}
+
+double reachableSpeed(const JointLimit& limit, double speed)
+{
+  const double largest = std::min(limit.velocity, MAX_SPEED);
+  return std::clamp(speed, -largest, largest);
 }
 
 JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& command)
@@ -358,6 +376,8 @@ JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& comm
                       ", expected a finite number" + (what[0] == 't' ? "" : " >= 0"));
   };
   check("target", command.target, std::isfinite(command.target));
+  check("target's rate", command.rate, std::isfinite(command.rate));
+  check("torque or force fed forward", command.feedforward, std::isfinite(command.feedforward));
   check("kp", command.kp, std::isnan(command.kp) || (std::isfinite(command.kp) && command.kp >= 0.0));
   check("kd", command.kd, std::isnan(command.kd) || (std::isfinite(command.kd) && command.kd >= 0.0));
   check("max_effort", command.max_effort, command.max_effort >= 0.0);

@@ -1,6 +1,9 @@
 #include "frictional_contact_sim/dynamics/servo_rows.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "frictional_contact_sim/model/dynamics_algorithms.h"
 
 namespace frictional_contact_sim
 {
@@ -25,7 +28,27 @@ ServoRows::ServoRows(std::vector<Body>& bodies, RowMemory& memory)
       servos_.push_back({static_cast<int>(b), j, model.velocityIndex(j), {}});
     }
     first_.push_back(static_cast<int>(servos_.size()));
+    followers_.push_back(findFollowers(model.tree, servo_of_.back()));
   }
+}
+
+/** Mimic joints by the joint that has the servo, chains of them too (circles are refused when a model is loaded). */
+std::vector<ServoRows::Follower> ServoRows::findFollowers(const MultibodyModel& tree, const std::vector<int>& servo_of)
+{
+  std::vector<Follower> followers;
+  for (const Joint& joint : tree.joints)
+  {
+    double multiplier = 1.0;
+    int followed = -1;
+    for (const Joint* link = &joint; link->mimic.joint >= 0; link = &tree.joints[followed])
+    {
+      multiplier *= link->mimic.multiplier;
+      followed = link->mimic.joint;
+    }
+    if (followed >= 0 && servo_of[followed] >= 0)
+      followers.push_back({servo_of[followed], joint.v_index, multiplier});
+  }
+  return followers;
 }
 
 double ServoRows::effort(const Servo& servo, double velocity, double dt)
@@ -49,12 +72,36 @@ void ServoRows::begin(const StepContext& context)
     const Body& body = bodies_[servo.body];
     const JointDrive& drive = body.state.drives[servo.joint];
     const int q_index = body.model.tree.joints[servo.joint].q_index;
-    servo.impulse =
-        servoImpulse(commandAt(body, servo.joint, context.middle), body.state.q[q_index], body.state.v[servo.v_index],
-                     context.dt, commandRate(body, servo.joint, context.middle));
+    servo.impulse = servoImpulse(commandAt(body, servo.joint, context.middle), body.state.q[q_index],
+                                 body.state.v[servo.v_index], context.dt);
     servo.bounded = servo.impulse.stiffness > 0.0 && std::isfinite(drive.effort_limit) &&
                     std::abs(drive.effort) >= BOUNDED_FRACTION * drive.effort_limit;
   }
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (bodies_[b].model.gravity_compensation)
+      addGravity(context, static_cast<int>(b));
+  for (Servo& servo : servos_)
+    if (servo.impulse.stiffness == 0.0)  // no row bounds what no velocity changes
+    {
+      const double most = context.dt * bodies_[servo.body].state.drives[servo.joint].effort_limit;
+      servo.impulse.offset = std::clamp(servo.impulse.offset, -most, most);
+    }
+}
+
+void ServoRows::addGravity(const StepContext& context, int body)
+{
+  Body& held = bodies_[body];
+  gravity_.resize(held.model.tree.nv);
+  computeGravityForces(held.model.tree, context.gravity, held.middle, gravity_);
+  const auto add = [&](Servo& servo, double force)
+  {
+    if (held.state.drives[servo.joint].command.mode != JointCommand::Mode::EFFORT)
+      servo.impulse.offset += context.dt * force;
+  };
+  for (int k = first_[body]; k < first_[body + 1]; ++k)
+    add(servos_[k], gravity_[servos_[k].v_index]);
+  for (const Follower& follower : followers_[body])
+    add(servos_[follower.servo], follower.multiplier * gravity_[follower.v_index]);
 }
 
 void ServoRows::addJointRows(const StepContext& context, int body, int joint, RowSink& sink)
@@ -69,6 +116,21 @@ void ServoRows::addJointRows(const StepContext& context, int body, int joint, Ro
   sink.endRow(-servo.impulse.offset / servo.impulse.stiffness, {WorkAccount::ACTUATORS, 0.0, memory_.at(body, joint)});
   sink.endLaw({LawType::DRY_FRICTION, context.dt * bodies_[body].state.drives[joint].effort_limit},
               {VelocityUnit::SLACK, jointUnit(bodies_[body], joint).reach});
+  countAsForce(context, bodies_[body], servo);
+}
+
+/**
+ * A row or not, the servo is a smooth force, of at most its limit: speeds that the residual is measured with know it.
+ * A robot that rests in its servos has no other, and 1e-12 m/s is no measure for a motion at full effort.
+ */
+void ServoRows::countAsForce(const StepContext& context, Body& body, const Servo& servo)
+{
+  body.change.setZero();
+  body.change[servo.v_index] = context.dt * body.state.drives[servo.joint].effort_limit;
+  solveMassMatrix(body.model.tree, body.middle, body.change);
+  const double speed = pointSpeed(body, body.change);
+  body.speed_change = std::max(body.speed_change, speed);
+  body.speed = std::max(body.speed, speed);
 }
 
 void ServoRows::addMomentum(const StepContext&, int body, VectorOut momentum)

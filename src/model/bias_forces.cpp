@@ -46,6 +46,20 @@ Vector6d velocityProduct(const Joint& joint, const VectorIn& v, const Vector6d& 
   }
   return Vector6d::Zero();
 }
+
+/** Forces of the links (data.link_force) to generalized ones, leaves first; sums those of subtrees. */
+void projectLinkForces(const MultibodyModel& model, MultibodyData& data, VectorOut forces)
+{
+  for (int i = static_cast<int>(model.links.size()) - 1; i >= 0; --i)
+  {
+    const Joint& joint = model.joints[i];
+    const int end = joint.v_index + velocitySize(joint.type);
+    for (int k = joint.v_index; k < end; ++k)
+      forces[k] = data.motion_subspace.col(k).dot(data.link_force[i]);
+    if (joint.parent >= 0)
+      data.link_force[joint.parent] += data.link_force[i];
+  }
+}
 }  // namespace
 
 void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eigen::Vector3d& gravity,
@@ -74,15 +88,17 @@ void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eig
     const WorldInertia& inertia = data.link_inertia[i];
     data.link_force[i] = multiply(inertia, acceleration) + crossForce(velocity, multiply(inertia, velocity));
   }
-  for (int i = links - 1; i >= 0; --i)
-  {
-    const Joint& joint = model.joints[i];
-    const int end = joint.v_index + velocitySize(joint.type);
-    for (int k = joint.v_index; k < end; ++k)
-      bias[k] = data.motion_subspace.col(k).dot(data.link_force[i]);
-    if (joint.parent >= 0)
-      data.link_force[joint.parent] += data.link_force[i];
-  }
+  projectLinkForces(model, data, bias);
+}
+
+void computeGravityForces(const MultibodyModel& model, const Eigen::Vector3d& gravity, MultibodyData& data,
+                          VectorOut forces)
+{
+  Vector6d acceleration;
+  acceleration << -gravity, Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < model.links.size(); ++i)
+    data.link_force[i] = multiply(data.link_inertia[i], acceleration);
+  projectLinkForces(model, data, forces);
 }
 
 void computeLinkAccelerations(const MultibodyModel& model, const VectorIn& v, const VectorIn& rate, MultibodyData& data)

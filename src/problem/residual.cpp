@@ -38,6 +38,17 @@ void setRoundOff(const IncrementalProblem& problem, const Eigen::VectorXd& v, Ei
   }
 }
 
+/** Largest term of a row of G with the velocities that M couples its own with: none of them is known better than their
+ * round-off. */
+double coupledVelocity(const IncrementalProblem& problem, int row, const Eigen::VectorXd& v)
+{
+  double largest = 0.0;
+  for (SparseRows::InnerIterator entry(problem.G, row); entry; ++entry)
+    for (SparseRows::InnerIterator coupled(problem.M, entry.col()); coupled; ++coupled)
+      largest = std::max(largest, std::abs(entry.value() * v[coupled.col()]));
+  return largest;
+}
+
 /** |G v + b| of a row relative to the largest term of all of them and to what the row is scaled with. */
 double bilateralResidual(const IncrementalProblem& problem, const Eigen::VectorXd& mass_inverse_force,
                          const Eigen::VectorXd& v)
@@ -59,7 +70,8 @@ double bilateralResidual(const IncrementalProblem& problem, const Eigen::VectorX
     {
       const LawScale& given = problem.bilateral_scales[static_cast<size_t>(row)];
       scale = std::max(scale, given.speed_change / given.reach);
-      if (error <= ResidualMetric::ROUND_OFF * std::numeric_limits<double>::epsilon() * given.speed / given.reach)
+      const double known = std::max(given.speed / given.reach, coupledVelocity(problem, row, v));
+      if (error <= ResidualMetric::ROUND_OFF * std::numeric_limits<double>::epsilon() * known)
         error = 0.0;
     }
     error /= scale;

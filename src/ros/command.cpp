@@ -8,90 +8,142 @@ namespace frictional_contact_sim
 {
 namespace
 {
-void requireFinite(double value, const std::string& joint)
+using Mode = JointCommand::Mode;
+
+void requireFinite(double value, const std::string& joint, const std::string& field)
 {
   if (!std::isfinite(value))
-    throw CommandError("joint '" + joint + "': found " + std::to_string(value) + ", expected a finite number");
+    throw CommandError("joint '" + joint + "': found " + std::to_string(value) + " in '" + field +
+                       "', expected a finite number");
+}
+
+/** @brief One number for each name, or none at all where the field is optional. */
+const std::vector<double>& readField(const sensor_msgs::JointState& message, const std::vector<double>& values,
+                                     const std::string& field, bool optional)
+{
+  if (values.size() != message.name.size() && !(optional && values.empty()))
+  {
+    throw CommandError("found " + std::to_string(message.name.size()) + " names and " + std::to_string(values.size()) +
+                       " numbers in '" + field + "', expected one for each name" + (optional ? ", or none" : ""));
+  }
+  for (size_t i = 0; i < values.size(); ++i)
+    requireFinite(values[i], message.name[i], field);
+  return values;
+}
+
+const ServoGains* findGains(const std::string& joint, const std::map<std::string, ServoGains>& gains)
+{
+  auto found = gains.find(joint);
+  if (found == gains.end())
+    found = gains.find("default");
+  return found == gains.end() ? nullptr : &found->second;
 }
 
 }  // namespace
 
-JointTargets namedTargets(const NameTable& names, const std::vector<std::string>& joints,
-                          const std::vector<double>& values, const std::string& field)
+std::vector<int> findJoints(const NameTable& names, const std::vector<std::string>& joints)
 {
-  if (joints.size() != values.size())
+  std::vector<int> indices;
+  for (const std::string& name : joints)
   {
-    throw CommandError("found " + std::to_string(joints.size()) + " names and " + std::to_string(values.size()) +
-                       " numbers in '" + field + "', expected one for each name");
-  }
-  JointTargets targets;
-  for (size_t i = 0; i < joints.size(); ++i)
-  {
-    const int joint = findJoint(names, joints[i]);
+    const int joint = findJoint(names, name);
     if (joint < 0)
-      throw CommandError("unknown joint '" + joints[i] + "'");
+      throw CommandError("unknown joint '" + name + "'");
     if (names.joints[joint].mimic)
-      throw CommandError("joint '" + joints[i] + "' follows another one and takes no command");
-    const auto same = [joint](const std::pair<int, double>& target) { return target.first == joint; };
-    if (std::any_of(targets.begin(), targets.end(), same))
-      throw CommandError("joint '" + joints[i] + "' is named twice");
-    requireFinite(values[i], joints[i]);
-    targets.emplace_back(joint, values[i]);
+      throw CommandError("joint '" + name + "' follows another one and takes no command");
+    if (std::find(indices.begin(), indices.end(), joint) != indices.end())
+      throw CommandError("joint '" + name + "' is named twice");
+    indices.push_back(joint);
   }
-  return targets;
+  return indices;
 }
 
-JointTargets orderedTargets(const NameTable& names, const std::vector<double>& values)
+std::vector<JointTarget> namedTargets(const NameTable& names, Mode mode, const sensor_msgs::JointState& message)
+{
+  const std::vector<double> none;
+  const bool position = mode == Mode::POSITION;
+  const std::vector<double>& targets = position ? readField(message, message.position, "position", false)
+                                       : mode == Mode::VELOCITY
+                                           ? readField(message, message.velocity, "velocity", false)
+                                           : readField(message, message.effort, "effort", false);
+  const std::vector<double>& rates = position ? readField(message, message.velocity, "velocity", true) : none;
+  const std::vector<double>& feedforward =
+      mode == Mode::EFFORT ? none : readField(message, message.effort, "effort", true);
+  const std::vector<int> indices = findJoints(names, message.name);
+  std::vector<JointTarget> read(indices.size());
+  for (size_t i = 0; i < indices.size(); ++i)
+    read[i] = {indices[i], targets[i], rates.empty() ? 0.0 : rates[i], feedforward.empty() ? 0.0 : feedforward[i]};
+  return read;
+}
+
+std::vector<JointTarget> orderedTargets(const NameTable& names, const std::vector<double>& values)
 {
   if (values.size() != names.actuated.size())
   {
     throw CommandError("found " + std::to_string(values.size()) + " numbers, expected " +
                        std::to_string(names.actuated.size()) + ", one for each actuated joint");
   }
-  JointTargets targets;
+  std::vector<JointTarget> targets(values.size());
   for (size_t i = 0; i < values.size(); ++i)
   {
-    requireFinite(values[i], names.joints[names.actuated[i]].name);
-    targets.emplace_back(names.actuated[i], values[i]);
+    requireFinite(values[i], names.joints[names.actuated[i]].name, "data");
+    targets[i].index = names.actuated[i];
+    targets[i].target = values[i];
   }
   return targets;
 }
 
-std::optional<std::string> clampTarget(const Joint& joint, const std::string& name, JointCommand::Mode mode,
-                                       double position, double& target)
+std::optional<std::string> clampTarget(const Joint& joint, const std::string& name, Mode mode, double position,
+                                       double& target)
 {
-  double lower = -std::min(joint.limit.effort, MAX_EFFORT);
-  double upper = -lower;
-  if (mode == JointCommand::Mode::POSITION)
+  const double wanted = target;
+  const char* quantity = "effort";
+  if (mode == Mode::POSITION)
   {
-    // A joint beyond its limits may still be sent back to them.
-    lower = std::min(std::max(joint.limit.lower, position - MAX_TRAVEL), joint.limit.upper);
-    upper = std::max(std::min(joint.limit.upper, position + MAX_TRAVEL), joint.limit.lower);
+    quantity = "position";
+    target = reachableTarget(joint.limit, position, target);
   }
-  if (target >= lower && target <= upper)
+  else if (mode == Mode::VELOCITY)
+  {
+    quantity = "velocity";
+    target = reachableSpeed(joint.limit, target);
+  }
+  else
+  {
+    const double most = std::min(joint.limit.effort, MAX_EFFORT);
+    target = std::clamp(target, -most, most);
+  }
+  if (target == wanted)
     return std::nullopt;
-  const bool above = target > upper;
-  target = above ? upper : lower;
   std::ostringstream line;
-  line << "joint '" << name << "': the command is " << (above ? "above " : "below ")
-       << (above ? "the largest" : "the smallest") << (mode == JointCommand::Mode::POSITION ? " position" : " effort")
-       << " it can be given now, " << target << ", which is taken";
+  line << "joint '" << name << "': the command is " << (wanted > target ? "above the largest " : "below the smallest ")
+       << quantity << " it can be given now, " << target << ", which is taken";
   return line.str();
 }
 
 JointCommand positionCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains)
 {
   JointCommand command;
-  command.mode = JointCommand::Mode::POSITION;
+  command.mode = Mode::POSITION;
   command.target = target;
-  auto found = gains.find(joint);
-  if (found == gains.end())
-    found = gains.find("default");
-  if (found != gains.end())
+  if (const ServoGains* own = findGains(joint, gains))
   {
-    command.kp = found->second.kp;
-    command.kd = found->second.kd;
-    command.max_effort = found->second.max_effort;
+    command.kp = own->kp;
+    command.kd = own->kd;
+    command.max_effort = own->max_effort;
+  }
+  return command;
+}
+
+JointCommand velocityCommand(double target, const std::string& joint, const std::map<std::string, ServoGains>& gains)
+{
+  JointCommand command;
+  command.mode = Mode::VELOCITY;
+  command.target = target;
+  if (const ServoGains* own = findGains(joint, gains))
+  {
+    command.kd = own->velocity_gain;
+    command.max_effort = own->max_effort;
   }
   return command;
 }
@@ -99,7 +151,7 @@ JointCommand positionCommand(double target, const std::string& joint, const std:
 JointCommand effortCommand(double target)
 {
   JointCommand command;
-  command.mode = JointCommand::Mode::EFFORT;
+  command.mode = Mode::EFFORT;
   command.target = target;
   return command;
 }

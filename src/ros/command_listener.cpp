@@ -3,13 +3,19 @@
 #include <ros/console.h>
 #include <std_msgs/Float64MultiArray.h>
 
+#include "frictional_contact_sim/ros/conversions.h"
+
 namespace frictional_contact_sim
 {
 namespace
 {
+using Mode = JointCommand::Mode;
+
 constexpr double LINE_PERIOD = 1.0;  // of the same line: commands may come a thousand times a second [s]
 constexpr size_t MOST_LINES = 10;  // different ones within that time
-constexpr std::uint32_t QUEUE = 10;
+constexpr std::uint32_t QUEUE = 1000;  // a second of commands for each step may come at once
+constexpr size_t MOST_PENDING = 10000;  // commands for later: ten seconds of one each step
+constexpr double FARTHEST_STAMP = 3600.0;  // ahead of simulated time; wall clock would be for ever [s]
 
 }  // namespace
 
@@ -17,33 +23,35 @@ CommandListener::CommandListener(ros::NodeHandle& private_node, Simulator& simul
                                  const std::map<std::string, ServoGains>& servo_gains)
   : simulator_(simulator), names_(names), servo_gains_(servo_gains), lines_(LINE_PERIOD, MOST_LINES)
 {
-  using Mode = JointCommand::Mode;
-  subscribe(private_node, "command/effort", Mode::EFFORT, &sensor_msgs::JointState::effort, "effort");
-  subscribe(private_node, "command/position", Mode::POSITION, &sensor_msgs::JointState::position, "position");
+  subscribe(private_node, "command/effort", Mode::EFFORT);
+  subscribe(private_node, "command/velocity", Mode::VELOCITY);
+  subscribe(private_node, "command/position", Mode::POSITION);
 }
 
-void CommandListener::subscribe(ros::NodeHandle& private_node, const std::string& topic, JointCommand::Mode mode,
-                                std::vector<double> sensor_msgs::JointState::*field, const std::string& field_name)
+void CommandListener::subscribe(ros::NodeHandle& private_node, const std::string& topic, Mode mode)
 {
   subscribers_.push_back(private_node.subscribe<sensor_msgs::JointState>(
       topic, QUEUE,
-      [this, topic, mode, field, field_name](const sensor_msgs::JointState::ConstPtr& message)
-      { command(topic, mode, [&] { return namedTargets(names_, message->name, (*message).*field, field_name); }); }));
+      [this, topic, mode](const sensor_msgs::JointState::ConstPtr& message)
+      { receive(topic, mode, message->header.stamp, [&] { return namedTargets(names_, mode, *message); }); }));
   const std::string array_topic = topic + "_array";
   subscribers_.push_back(private_node.subscribe<std_msgs::Float64MultiArray>(
       array_topic, QUEUE,
       [this, array_topic, mode](const std_msgs::Float64MultiArray::ConstPtr& message)
-      { command(array_topic, mode, [&] { return orderedTargets(names_, message->data); }); }));
+      { receive(array_topic, mode, ros::Time(), [&] { return orderedTargets(names_, message->data); }); }));
 }
 
 /** @brief All of a message or nothing of it. */
-void CommandListener::command(const std::string& topic, JointCommand::Mode mode,
-                              const std::function<JointTargets()>& read)
+void CommandListener::receive(const std::string& topic, Mode mode, const ros::Time& stamp,
+                              const std::function<std::vector<JointTarget>()>& read)
 {
   try
   {
-    for (const auto& [index, target] : read())
-      give(topic, mode, index, target);
+    const Command command{topic, mode, read()};
+    if (stamp > toStamp(simulator_.time()))
+      keep(stamp, command);
+    else
+      give(command);
   }
   catch (const std::exception& error)
   {
@@ -51,22 +59,80 @@ void CommandListener::command(const std::string& topic, JointCommand::Mode mode,
   }
 }
 
-void CommandListener::give(const std::string& topic, JointCommand::Mode mode, int index, double target)
+void CommandListener::keep(const ros::Time& stamp, const Command& command)
 {
-  const JointHandle& handle = names_.joints[index];
+  if ((stamp - toStamp(simulator_.time())).toSec() > FARTHEST_STAMP)
+    throw CommandError(
+        "header.stamp is more than an hour ahead of simulated time, expected simulated time (is "
+        "/use_sim_time set?) or zero");
+  if (pending_.size() >= MOST_PENDING)
+    throw CommandError(std::to_string(MOST_PENDING) + " commands wait for their header.stamp already");
+  pending_.emplace(stamp, command);
+}
+
+void CommandListener::giveDue()
+{
+  if (pending_.empty())
+    return;
+  const ros::Time now = toStamp(simulator_.time());
+  while (!pending_.empty() && pending_.begin()->first <= now)
+  {
+    give(pending_.begin()->second);
+    pending_.erase(pending_.begin());
+  }
+}
+
+void CommandListener::give(const Command& command)
+{
+  for (const JointTarget& target : command.targets)
+    give(command, target);
+}
+
+void CommandListener::give(const Command& command, const JointTarget& wanted)
+{
+  const JointHandle& handle = names_.joints[wanted.index];
+  JointTarget target = wanted;
+  clamp(command.topic, handle, command.mode, target.target);
+  clamp(command.topic, handle, Mode::VELOCITY, target.rate);
+  clamp(command.topic, handle, Mode::EFFORT, target.feedforward);
+  JointCommand joint_command = command.mode == Mode::EFFORT ? effortCommand(target.target)
+                               : command.mode == Mode::VELOCITY
+                                   ? velocityCommand(target.target, handle.name, servo_gains_)
+                                   : positionCommand(target.target, handle.name, servo_gains_);
+  joint_command.rate = target.rate;
+  joint_command.feedforward = target.feedforward;
+  simulator_.setCommand(handle.body, handle.joint, joint_command);
+}
+
+/** @brief A joint has one warning of each kind: who commands beyond its limits does so at every step. */
+void CommandListener::clamp(const std::string& topic, const JointHandle& handle, Mode mode, double& target)
+{
   const Joint& joint = simulator_.model(handle.body).joints[handle.joint];
   const double position = simulator_.position(handle.body)[handle.q_index];
-  if (const std::optional<std::string> line = clampTarget(joint, handle.name, mode, position, target))
-    warn("~" + topic + ": " + *line);
-  simulator_.setCommand(
-      handle.body, handle.joint,
-      mode == JointCommand::Mode::EFFORT ? effortCommand(target) : positionCommand(target, handle.name, servo_gains_));
+  const std::optional<std::string> line = clampTarget(joint, handle.name, mode, position, target);
+  if (line && clamped_.emplace(handle.name, mode).second)
+    ROS_WARN_STREAM("~" << topic << ": " << *line << "; further ones of this joint are not shown");
 }
 
 void CommandListener::warn(const std::string& line)
 {
   if (lines_.pass(line, ros::WallTime::now().toSec()))
     ROS_WARN_STREAM(line);
+}
+
+void CommandListener::renumberJoints(const std::vector<int>& new_index)
+{
+  for (auto& [stamp, command] : pending_)
+  {
+    std::vector<JointTarget> kept;
+    for (JointTarget target : command.targets)
+    {
+      target.joint = new_index[static_cast<size_t>(target.joint)];
+      if (target.joint >= 0)
+        kept.push_back(target);
+    }
+    command.targets = kept;
+  }
 }
 
 }  // namespace frictional_contact_sim

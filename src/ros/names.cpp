@@ -121,4 +121,12 @@ int findJoint(const NameTable& table, const std::string& name)
   return -1;
 }
 
+std::vector<int> newJointIndices(const NameTable& before, const NameTable& now)
+{
+  std::vector<int> indices;
+  for (const JointHandle& joint : before.joints)
+    indices.push_back(findJoint(now, joint.name));
+  return indices;
+}
+
 }  // namespace frictional_contact_sim

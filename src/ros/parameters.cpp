@@ -56,6 +56,7 @@ void readServoGains(const ConfigNode& node, std::map<std::string, ServoGains>& s
   {
     ServoGains& target = servo_gains[joint];
     gains.readMap({key("kp", target.kp, notNegative()), key("kd", target.kd, notNegative()),
+                   key("velocity_gain", target.velocity_gain, notNegative()),
                    key("max_effort", target.max_effort, notNegative())});
   }
 }
@@ -118,7 +119,7 @@ ConfigKeys unusedKeys(const ConfigKeys& keys, const std::string& who, NodeParame
 {
   ConfigKeys unused;
   for (const ConfigKey& one : keys)
-    if (one.name != "hold_initial_position")  // goes for all bodies
+    if (one.name != "hold_initial_position" && one.name != "gravity_compensation")  // go for all bodies
       unused.push_back(key(one.name, [&parameters, who, name = one.name](const ConfigNode&)
                            { parameters.warnings.push_back("~" + name + ": ignored, " + who + " says it"); }));
   return unused;
@@ -155,10 +156,11 @@ void readRobots(const ConfigNode& robots, const FindDescription& find, NodeParam
     parameters.robots.insert(name);
   }
 }
-
-ConfigKey holdKey(bool& hold)
+/** @brief What makes servos of all bodies, whatever the scenario file says of each. */
+ConfigKeys servoKeys(BodySpec& all)
 {
-  return key("hold_initial_position", hold);
+  return {key("hold_initial_position", all.hold_initial_position),
+          key("gravity_compensation", all.gravity_compensation)};
 }
 
 /** @brief All that are not the robot's. */
@@ -201,19 +203,19 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   const ConfigNode root = parameterTree(tree, &parameters.warnings);
   const std::string file = root.has("scenario") ? root.at("scenario").anyText() : "";
   BodySpec robot;
-  bool hold = false;
+  BodySpec all;
   ConfigKeys keys;
   if (!file.empty())
   {
     scenario = loadScenarioFile(findScenario(file));
     keys =
-        unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + ConfigKeys{holdKey(hold)};
+        unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + servoKeys(all);
   }
   else if (root.has("robots"))
   {
     scenario.name = "robots";
     scenario.ground = GroundSpec();
-    keys = worldKeys(scenario) + unusedKeys(robotKeys(robot), "~robots", parameters) + ConfigKeys{holdKey(hold)};
+    keys = worldKeys(scenario) + unusedKeys(robotKeys(robot), "~robots", parameters) + servoKeys(all);
   }
   else if (!robot_description.empty())
   {
@@ -238,7 +240,10 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   if (root.has("robots"))
     readRobots(root.at("robots"), find_description, parameters);
   for (BodySpec& body : scenario.bodies)
-    body.hold_initial_position = body.hold_initial_position || hold;
+  {
+    body.hold_initial_position = body.hold_initial_position || all.hold_initial_position;
+    body.gravity_compensation = body.gravity_compensation || all.gravity_compensation;
+  }
   return parameters;
 }
 

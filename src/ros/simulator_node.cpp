@@ -71,7 +71,8 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , delivery_(publisher_->dataTopics(),
               publisher_->losslessTopics(resolved(node, private_node, parameters.lossless_topics)),
               parameters.hold_limit)
-  , commands_(private_node, simulator_, names_, parameters.servo_gains)
+  , commands_(private_node, simulator_, names_, parameters_.servo_gains)
+  , trajectories_(private_node, simulator_, names_, parameters_.servo_gains)
   , frames_(simulator_, names_, true)
   , wrenches_(private_node, names_, simulator_)
   , pacer_(parameters.real_time_factor)
@@ -171,6 +172,8 @@ void SimulatorNode::setPaused(bool paused)
 void SimulatorNode::reset()
 {
   simulator_.reset();
+  commands_.forgetPending();
+  trajectories_.update();
   if (paused_)
     publisher_->publishState();
   if (judge("impact at the start") == Outcome::FAILED)
@@ -180,6 +183,7 @@ void SimulatorNode::reset()
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
+  commands_.forgetPending();
   publisher_->restartStamps();
   publisher_->publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
   if (paused_)
@@ -267,6 +271,7 @@ SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 /** @brief One step, its messages, and whatever keeps them from being lost. Of a step that is not taken the report. */
 SimulatorNode::Outcome SimulatorNode::advance()
 {
+  commands_.giveDue();
   const double start = wallSeconds();
   const bool taken = simulator_.step().taken;
   summary_.add(simulator_.report(), simulator_.outcome());
@@ -279,6 +284,7 @@ SimulatorNode::Outcome SimulatorNode::advance()
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_->publish(pacer_.realTimeFactor());
+  trajectories_.update();
   return judge("step " + std::to_string(simulator_.report().step));
 }
 

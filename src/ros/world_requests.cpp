@@ -63,7 +63,11 @@ void SimulatorNode::changeBodies(const std::function<void()>& change)
   if (waiting_)
     throw RequestError("waiting for subscribers");
   change();
+  const NameTable before = names_;
   names_ = makeNameTable(simulator_, name_rules_);
+  const std::vector<int> new_index = newJointIndices(before, names_);
+  commands_.renumberJoints(new_index);
+  trajectories_.renumberJoints(new_index);
   // The old one goes after the new one has advertised: roscpp keeps what both have.
   auto next = std::make_unique<StepPublisher>(node_, private_node_, simulator_, names_, name_rules_, parameters_);
   next->takeOver(*publisher_);

@@ -68,7 +68,10 @@ void readCommand(const ConfigNode& node, const std::string& joint, BodySpec& bod
   CommandSchedule schedule;
   std::string targets;
   int given = 0;
-  ConfigKeys keys = {key("kp", command.kp, notNegative()), key("kd", command.kd, notNegative()),
+  ConfigKeys keys = {key("rate", command.rate),
+                     key("feedforward", command.feedforward),
+                     key("kp", command.kp, notNegative()),
+                     key("kd", command.kd, notNegative()),
                      key("max_effort", command.max_effort, notNegative()),
                      key("times", [&](const ConfigNode& times) { schedule.times = times.numbers(); })};
   for (const CommandKey& kind : COMMAND_KEYS)
@@ -95,6 +98,10 @@ void readCommand(const ConfigNode& node, const std::string& joint, BodySpec& bod
   node.readMap(keys);
   if (given != 1)
     node.fail("expected exactly one of effort, position, velocity, efforts, positions, velocities");
+  if (node.has("rate") && (command.mode != Mode::POSITION || !targets.empty()))
+    node.at("rate").failExpecting("none without position");
+  if (node.has("feedforward") && command.mode == Mode::EFFORT)
+    node.at("feedforward").failExpecting("none beside an effort");
   if (!targets.empty() || node.has("times"))
   {
     if (targets.empty())
@@ -172,6 +179,7 @@ ConfigKeys bodyKeys(BodySpec& body)
               readCommand(command, name, body);
           }),
       key("hold_initial_position", body.hold_initial_position),
+      key("gravity_compensation", body.gravity_compensation),
       key(
           "wrenches",
           [&body](const ConfigNode& node)

@@ -302,6 +302,7 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
     warnings.push_back("body '" + spec.name + "': velocity limits of joints are not enforced (" +
                        std::to_string(limited) + " joints)");
   model.name = spec.name;
+  model.gravity_compensation = spec.gravity_compensation;
   return model;
 }
 

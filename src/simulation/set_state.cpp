@@ -49,14 +49,26 @@ void checkWelds(const Simulator& simulator, const SimulationState& state)
   }
 }
 
-/** A drive can follow a schedule only where the world has one. */
+/** A drive can follow a schedule only where the world has one; a trajectory comes with it. */
 void checkDrives(const WorldModel& world, const SimulationState& state)
 {
   for (size_t b = 0; b < state.bodies.size(); ++b)
     for (size_t j = 0; j < state.bodies[b].drives.size(); ++j)
-      if (state.bodies[b].drives[j].is_scheduled && world.bodies[b].schedules[j].empty())
-        throw StateError("joint '" + world.bodies[b].tree.joints[j].name + "' of body '" + world.bodies[b].name +
-                         "' follows a command over time, expected one that this scenario has");
+    {
+      const JointDrive& drive = state.bodies[b].drives[j];
+      const std::string place =
+          "joint '" + world.bodies[b].tree.joints[j].name + "' of body '" + world.bodies[b].name + "': ";
+      if (drive.is_scheduled && world.bodies[b].schedules[j].empty())
+        throw StateError(place + "follows a command over time, expected one that this scenario has");
+      try
+      {
+        drive.trajectory.validate();
+      }
+      catch (const std::invalid_argument& error)
+      {
+        throw StateError(place + error.what());
+      }
+    }
 }
 
 /** What the sizes do not say of a state from outside. */

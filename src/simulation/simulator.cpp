@@ -283,19 +283,6 @@ double Simulator::effort(int body, int joint) const
   return impl_->state.bodies[body].drives[joint].effort;
 }
 
-void Simulator::setCommand(int body, int joint, const JointCommand& command)
-{
-  JointDrive& drive = impl_->state.bodies[body].drives[joint];
-  const double effort = drive.effort;
-  drive = makeDrive(impl_->bodies[body].model, joint, command);
-  drive.effort = effort;
-}
-
-const JointCommand& Simulator::command(int body, int joint) const
-{
-  return impl_->state.bodies[body].drives[joint].command;
-}
-
 void Simulator::addWrench(int body, const ExternalWrench& wrench)
 {
   const BodyModel& model = impl_->bodies[body].model;

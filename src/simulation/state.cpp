@@ -9,16 +9,46 @@ namespace frictional_contact_sim
 {
 namespace
 {
+void visit(StateArchive& archive, TrajectoryPoint& point)
+{
+  archive.number("trajectory.time", point.time);
+  archive.number("trajectory.position", point.motion.position);
+  archive.number("trajectory.velocity", point.motion.velocity);
+  archive.number("trajectory.acceleration", point.motion.acceleration);
+  archive.index("trajectory.order", point.order);
+}
+
+/** What few commands have. */
+void visitExtras(StateArchive& archive, JointDrive& drive)
+{
+  archive.number("command.rate", drive.command.rate);
+  archive.number("command.feedforward", drive.command.feedforward);
+  for (TrajectoryPoint& point : archive.list("trajectory", drive.trajectory.points))
+    visit(archive, point);
+}
+
 void visit(StateArchive& archive, JointDrive& drive)
 {
-  // One number for mode and schedule: states without schedules are those of before there were any, to the bit.
+  // One number for mode, schedule and extras: states without these are those of before there were any, to the bit.
   constexpr std::uint64_t MODES = 3;
-  std::uint64_t mode = static_cast<std::uint64_t>(drive.command.mode) + (drive.is_scheduled ? MODES : 0);
+  constexpr std::uint64_t KINDS = 2 * MODES;
+  const bool extras = drive.command.rate != 0.0 || drive.command.feedforward != 0.0 || !drive.trajectory.points.empty();
+  std::uint64_t mode =
+      static_cast<std::uint64_t>(drive.command.mode) + (drive.is_scheduled ? MODES : 0) + (extras ? KINDS : 0);
   archive.integer("command.mode", mode);
-  if (mode >= 2 * MODES)
-    throw StateError("command.mode is " + std::to_string(mode) + ", expected less than " + std::to_string(2 * MODES));
+  if (mode >= 2 * KINDS)
+    throw StateError("command.mode is " + std::to_string(mode) + ", expected less than " + std::to_string(2 * KINDS));
   drive.command.mode = static_cast<JointCommand::Mode>(mode % MODES);
-  drive.is_scheduled = mode >= MODES;
+  drive.is_scheduled = mode % KINDS >= MODES;
+  if (mode >= KINDS)
+  {
+    visitExtras(archive, drive);
+  }
+  else if (extras)  // a reader's state had them, what is read has not
+  {
+    drive.command.rate = drive.command.feedforward = 0.0;
+    drive.trajectory.points.clear();
+  }
   archive.number("command.target", drive.command.target);
   archive.number("command.kp", drive.command.kp);
   archive.number("command.kd", drive.command.kd);

@@ -39,6 +39,18 @@ TEST(ClampTest, WhatAJointCanDoIsLeftAlone)
   EXPECT_EQ(effort, -30.0);
 }
 
+TEST(ClampTest, AVelocityEndsWithinTheLimit)
+{
+  Joint hip = joint(-1.0, 2.0, 30.0);
+  double speed = -1e300;
+  EXPECT_TRUE(clampTarget(hip, "hip", Mode::VELOCITY, 0.0, speed));
+  EXPECT_EQ(speed, -MAX_SPEED);
+  hip.limit.velocity = 3.0;
+  EXPECT_THAT(*clampTarget(hip, "hip", Mode::VELOCITY, 0.0, speed), testing::HasSubstr("below the smallest velocity"));
+  EXPECT_EQ(speed, -3.0);
+  EXPECT_FALSE(clampTarget(hip, "hip", Mode::VELOCITY, 0.0, speed));
+}
+
 TEST(ClampTest, TheLineNamesJointSideAndWhatIsTaken)
 {
   double target = 1e6;

@@ -186,14 +186,57 @@ TEST(CommandTest, IsTakenAsAWholeOrNotAtAll)
   const NameTable names = makeNameTable(simulator);
   const std::string first = names.joints[0].name;
   const std::string second = names.joints[1].name;
-  EXPECT_EQ(namedTargets(names, {second, first}, {1.0, 2.0}, "effort"), (JointTargets{{1, 1.0}, {0, 2.0}}));
-  EXPECT_THROW(namedTargets(names, {first, "nobody"}, {1.0, 2.0}, "effort"), CommandError);
-  EXPECT_THROW(namedTargets(names, {first, first}, {1.0, 2.0}, "effort"), CommandError);
-  EXPECT_THROW(namedTargets(names, {first, second}, {1.0}, "effort"), CommandError);
-  EXPECT_THROW(namedTargets(names, {first}, {std::nan("")}, "effort"), CommandError);
+  using Mode = JointCommand::Mode;
+  const auto efforts = [&](const std::vector<std::string>& joints, const std::vector<double>& values)
+  {
+    sensor_msgs::JointState message;
+    message.name = joints;
+    message.effort = values;
+    return namedTargets(names, Mode::EFFORT, message);
+  };
+  const std::vector<JointTarget> read = efforts({second, first}, {1.0, 2.0});
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].index, 1);
+  EXPECT_EQ(read[0].target, 1.0);
+  EXPECT_EQ(read[1].index, 0);
+  EXPECT_EQ(read[1].target, 2.0);
+  EXPECT_THROW(efforts({first, "nobody"}, {1.0, 2.0}), CommandError);
+  EXPECT_THROW(efforts({first, first}, {1.0, 2.0}), CommandError);
+  EXPECT_THROW(efforts({first, second}, {1.0}), CommandError);
+  EXPECT_THROW(efforts({first}, {std::nan("")}), CommandError);
   EXPECT_EQ(orderedTargets(names, {1.0, 2.0, 3.0, 4.0}).size(), 4u);
   EXPECT_THROW(orderedTargets(names, {1.0}), CommandError);
   EXPECT_THROW(orderedTargets(names, {1.0, 2.0, 3.0, INFINITY}), CommandError);
+}
+
+TEST(CommandTest, FieldsBesideTheModesOwnAreTakenWholeOrLeftOut)
+{
+  using Mode = JointCommand::Mode;
+  const Simulator simulator(twinScenario());
+  const NameTable names = makeNameTable(simulator);
+  sensor_msgs::JointState message;
+  message.name = {names.joints[0].name, names.joints[1].name};
+  message.position = {0.1, 0.2};
+  message.velocity = {1.0, 2.0};
+  message.effort = {10.0, 20.0};
+  const JointTarget position = namedTargets(names, Mode::POSITION, message)[1];
+  EXPECT_EQ(position.target, 0.2);
+  EXPECT_EQ(position.rate, 2.0);
+  EXPECT_EQ(position.feedforward, 20.0);
+  const JointTarget velocity = namedTargets(names, Mode::VELOCITY, message)[1];
+  EXPECT_EQ(velocity.target, 2.0);
+  EXPECT_EQ(velocity.rate, 0.0);
+  EXPECT_EQ(velocity.feedforward, 20.0);
+  const JointTarget effort = namedTargets(names, Mode::EFFORT, message)[1];
+  EXPECT_EQ(effort.target, 20.0);
+  EXPECT_EQ(effort.feedforward, 0.0);
+  message.velocity = {1.0};
+  EXPECT_THROW(namedTargets(names, Mode::POSITION, message), CommandError);
+  EXPECT_NO_THROW(namedTargets(names, Mode::EFFORT, message));
+  message.velocity = {1.0, INFINITY};
+  EXPECT_THROW(namedTargets(names, Mode::POSITION, message), CommandError);
+  message.velocity.clear();
+  EXPECT_EQ(namedTargets(names, Mode::POSITION, message)[0].rate, 0.0);
 }
 
 TEST(CommandTest, AJointsOwnGainsComeBeforeTheDefault)

@@ -232,6 +232,10 @@ TEST(CommandScheduleTest, MistakesAreNamedByLine)
             place + ".times': found a list of 2, expected none without efforts, positions or velocities");
   EXPECT_EQ(complaint("{times: [0, .nan], efforts: [0, 1]}"),
             place + ".times[1]': found '.nan', expected a finite number");
+  EXPECT_EQ(complaint("{position: 1, rate: 2, feedforward: 3}"), "accepted");
+  EXPECT_EQ(complaint("{velocity: 1, rate: 2}"), place + ".rate': found '2', expected none without position");
+  EXPECT_EQ(complaint("{effort: 1, feedforward: 2}"),
+            place + ".feedforward': found '2', expected none beside an effort");
   EXPECT_NE(complaint("{times: [0], positions: [0], efforts: [1]}").find("exactly one of"), std::string::npos);
   EXPECT_NE(complaint("{times: [0], postions: [0]}").find("did you mean 'positions'?"), std::string::npos);
 }

@@ -5,12 +5,13 @@
  *
  * A servo with stiffness kp and damping kd pulls the joint to target position q_d (or velocity v_d):
  *
- *     tau = kp (q_d - q') + kd (v_d - v_k+1),      q' = q_k + dt/4 (v_k + v_k+1)
+ *     tau = kp (q_d - q') + kd (v_d - v_k+1) + tau_ff,      q' = q_k + dt/4 (v_k + v_k+1)
  *
  * stiffness at the midpoint, damping at the end of the step (docs/architecture.md). Over the step this is linear
  * in the unknown velocity:  dt tau = c - K v_k+1  with
  *
- *     K = dt^2/4 kp + dt kd   [kg] or [kg m^2],        c = dt (kp (q_d - q_k - dt/4 v_k) + kd v_d)   [N s] or [N m s]
+ *     K = dt^2/4 kp + dt kd   [kg] or [kg m^2],        c = dt (kp (q_d - q_k - dt/4 v_k) + kd v_d + tau_ff)   [N s] or
+ * [N m s]
  *
  * so K goes to the diagonal of M and c to the right-hand side: symmetric, stable for any gain. Beyond dt sqrt(kp/m) = 2
  * the spring is resolved no more: the joint still goes to its target without overshoot growing, but its oscillation
@@ -33,6 +34,8 @@ struct JointCommand
   };
   Mode mode = Mode::EFFORT;
   double target = 0.0;  ///< [N m] / [rad] / [rad/s], or [N] / [m] / [m/s]
+  double rate = 0.0;  ///< POSITION: velocity v_d of the target [rad/s] or [m/s]
+  double feedforward = 0.0;  ///< POSITION, VELOCITY: tau_ff, within the effort limit too [N m] or [N]
   double kp = std::numeric_limits<double>::quiet_NaN();  ///< stiffness [N m/rad] or [N/m], >= 0
   double kd = std::numeric_limits<double>::quiet_NaN();  ///< damping [N m s/rad] or [N s/m], >= 0
   double max_effort = std::numeric_limits<double>::infinity();  ///< [N m] or [N], besides the URDF's effort limit
@@ -59,11 +62,8 @@ struct ServoImpulse
   double stiffness = 0.0;  ///< K [kg] or [kg m^2], zero for a constant effort
 };
 
-/**
- * @brief The impulse of a command over one step of length dt at joint position q and velocity v (gains set).
- * @param rate v_d of a POSITION command whose target moves [rad/s] or [m/s]
- */
-ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt, double rate = 0.0);
+/** @brief The impulse of a command over one step of length dt at joint position q and velocity v (gains set). */
+ServoImpulse servoImpulse(const JointCommand& command, double q, double v, double dt);
 
 /**
  * @brief Fills unset gains for a joint that moves `inertia`: a critically damped servo of DEFAULT_SERVO_FREQUENCY,
@@ -71,6 +71,11 @@ ServoImpulse servoImpulse(const JointCommand& command, double q, double v, doubl
  * @param inertia [kg] or [kg m^2] > 0
  */
 void fillDefaultGains(double inertia, JointCommand& command);
+
+// What no command goes beyond, whatever the URDF says: a number that is finite but absurd leaves no problem to solve.
+constexpr double MAX_TRAVEL = 50.0;  ///< of a target from where the joint is [rad] or [m]
+constexpr double MAX_SPEED = 1e3;  ///< [rad/s] or [m/s]
+constexpr double MAX_EFFORT = 1e9;  ///< [N m] or [N]
 
 constexpr double DEFAULT_SERVO_FREQUENCY = 40.0;  ///< [rad/s]: settles in a tenth of a second, resolved at dt = 1e-3 s
 

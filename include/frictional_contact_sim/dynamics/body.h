@@ -10,6 +10,7 @@
 
 #include "frictional_contact_sim/dynamics/actuation.h"
 #include "frictional_contact_sim/dynamics/command_schedule.h"
+#include "frictional_contact_sim/dynamics/joint_trajectory.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
@@ -44,6 +45,7 @@ struct BodyModel
   bool isotropic;  ///< the root link's principal moments are equal
   BaseMotion base_motion;
   std::vector<CommandSchedule> schedules;  ///< joints: commands over time, empty where there is none
+  bool gravity_compensation = false;  ///< servos also carry what hangs on their joints (servo_rows.h)
 
   /** @brief What meshes add to extents, sizes and reach: CollisionWorld::meshReach. Until then they count as nothing.
    */
@@ -57,8 +59,9 @@ struct BodyModel
 /** @brief The drive of one joint: its command, and what it did in the last step. */
 struct JointDrive
 {
-  JointCommand command;  ///< gains set; follows a schedule: with the target of the last step
+  JointCommand command;  ///< gains set; follows a schedule or trajectory: with the target of the last step
   bool is_scheduled = false;  ///< the target is that of BodyModel::schedules, until another command is given
+  JointTrajectory trajectory;  ///< of a POSITION command: its target, until another command is given; empty = none
   double effort_limit = 0.0;  ///< the smaller of the URDF's and the command's [N m] or [N], may be infinite
   double effort = 0.0;  ///< mean over the last step, after saturation [N m] or [N]
 };
@@ -143,11 +146,14 @@ void removeExpiredWrenches(Body& body, double now);
  *  Needs mass matrix and poses in `data`. [kg m^2] or [kg] */
 double servoInertia(const BodyModel& model, const MultibodyData& data, int joint);
 
-/** @brief The drive's command in a step whose middle is at scenario time `middle` [s]: from its schedule if it follows
- * one, an effort within the limit. */
+/** @brief The drive's command in a step whose middle is at scenario time `middle` [s]: from its trajectory or schedule
+ * if it follows one, within the joint's limits and MAX_TRAVEL, MAX_SPEED then. */
 JointCommand commandAt(const Body& body, int joint, double middle);
-/** @brief Slope of the drive's target then [1/s of its unit]. */
-double commandRate(const Body& body, int joint, double middle);
+/** @brief Takes a target of a servo into the joint's limits, at most MAX_TRAVEL from where it is, also if beyond them.
+ * @param position of the joint [rad] or [m] */
+double reachableTarget(const JointLimit& limit, double position, double target);
+/** @brief Takes a velocity into the joint's limit and MAX_SPEED. */
+double reachableSpeed(const JointLimit& limit, double speed);
 
 /** @brief Checks a command and fills its gains. @throws std::invalid_argument naming the joint and the number */
 JointDrive makeDrive(const BodyModel& model, int joint, const JointCommand& command);

@@ -8,6 +8,10 @@
  * |r| < limit dt, and +-limit dt beyond: the law of dry friction, exactly. A servo that worked near its limit in the
  * last step is a row from the start; one found beyond it becomes a row and the step is solved again. Rows are only ever
  * added within a step, so this ends.
+ *
+ * Gravity compensation (BodyModel::gravity_compensation) adds to tau_ff of every servo (not of an effort) what holds
+ * the links beyond its joint against gravity, at the midpoint; for a joint that others mimic their share too. Of a
+ * fixed base that is all of gravity; of a floating one what the limbs weigh, not what stands on them.
  */
 #include <vector>
 
@@ -31,6 +35,13 @@ public:
   void book(const StepContext& context, int body, const Solution& solution, EnergyLedger& ledger) const override;
 
 private:
+  /** @brief A joint that mimics the servo's, through others perhaps: v_follower = multiplier v_servo. */
+  struct Follower
+  {
+    int servo;  ///< index in servos_
+    int v_index;
+    double multiplier;
+  };
   struct Servo
   {
     int body;
@@ -40,6 +51,9 @@ private:
     bool bounded = false;  ///< solved as a row in this step
     int row = -1;  ///< then
   };
+  static std::vector<Follower> findFollowers(const MultibodyModel& tree, const std::vector<int>& servo_of);
+  static void countAsForce(const StepContext& context, Body& body, const Servo& servo);
+  void addGravity(const StepContext& context, int body);
   static double effort(const Servo& servo, double velocity, double dt);
 
   std::vector<Body>& bodies_;
@@ -47,6 +61,8 @@ private:
   std::vector<Servo> servos_;  ///< one a joint that takes commands, body by body
   std::vector<std::vector<int>> servo_of_;  ///< body, joint: index in servos_, -1 = none
   std::vector<int> first_;  ///< bodies + 1: first servo of each
+  std::vector<std::vector<Follower>> followers_;  ///< bodies
+  Eigen::VectorXd gravity_;  ///< scratch: generalized force that holds a body
 };
 
 }  // namespace frictional_contact_sim

@@ -39,6 +39,9 @@ void computeBiasForces(const MultibodyModel& model, const VectorIn& v, const Eig
  */
 void computeLinkAccelerations(const MultibodyModel& model, const VectorIn& v, const VectorIn& rate,
                               MultibodyData& data);
+/** @brief Gravity's part of the bias forces (nv): what holds the links at rest. Needs forwardKinematics. */
+void computeGravityForces(const MultibodyModel& model, const Eigen::Vector3d& gravity, MultibodyData& data,
+                          VectorOut forces);
 
 /** @brief Adds J^T (force; torque) of a wrench at a link-fixed point to tau (nv). World axes, [N], [N m]. */
 void addWrench(const MultibodyModel& model, const MultibodyData& data, int link, const Eigen::Vector3d& point,

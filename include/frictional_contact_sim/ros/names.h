@@ -51,6 +51,9 @@ NameTable makeNameTable(const Simulator& simulator, const NameRules& rules);
 /** @brief Of the start, no body prefixed. */
 NameTable makeNameTable(const Simulator& simulator);
 
+/** @brief By joint of `before` its index now, -1 when it is gone: names stay while bodies come and go. */
+std::vector<int> newJointIndices(const NameTable& before, const NameTable& now);
+
 /** @brief A URDF name as a part of a topic: what ROS does not take there becomes `_`. */
 std::string topicName(const std::string& urdf_name);
 /** @brief A name that can be part of a topic's: a letter, then letters, digits and _. */

@@ -22,12 +22,13 @@ class XmlRpcValue;
 
 namespace frictional_contact_sim
 {
-/** @brief Gains of ~command/position; unset numbers get defaults from the joint's inertia. */
+/** @brief Gains of ~command/position, velocity and trajectory; unset numbers get defaults from the joint's inertia. */
 struct ServoGains
 {
   double kp = std::numeric_limits<double>::quiet_NaN();  ///< [N m/rad] or [N/m]
   double kd = std::numeric_limits<double>::quiet_NaN();  ///< [N m s/rad] or [N s/m]
   double max_effort = std::numeric_limits<double>::infinity();  ///< besides the URDF's limit [N m] or [N]
+  double velocity_gain = std::numeric_limits<double>::quiet_NaN();  ///< kd of ~command/velocity [N m s/rad] or [N s/m]
 };
 
 struct NodeParameters

@@ -24,6 +24,7 @@
 #include "frictional_contact_sim/ros/state_services.h"
 #include "frictional_contact_sim/ros/step_publisher.h"
 #include "frictional_contact_sim/ros/throttle.h"
+#include "frictional_contact_sim/ros/trajectory_server.h"
 #include "frictional_contact_sim/ros/wrench_services.h"
 
 namespace frictional_contact_sim
@@ -82,6 +83,7 @@ private:
   std::unique_ptr<StepPublisher> publisher_;
   DeliveryMonitor delivery_;
   CommandListener commands_;
+  TrajectoryServer trajectories_;
   FrameResolver frames_;
   WrenchListener wrenches_;
   StateSlot saved_state_;

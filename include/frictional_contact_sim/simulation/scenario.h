@@ -45,6 +45,7 @@ struct BodySpec
   std::map<std::string, JointCommand> commands;
   std::map<std::string, CommandSchedule> schedules;  ///< of joints in `commands`: their targets over time
   bool hold_initial_position = false;  ///< every actuated joint without a command gets a position servo at its start
+  bool gravity_compensation = false;  ///< position and velocity servos also carry the weight of what they move
   std::vector<ExternalWrench> wrenches;
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion;  ///< fixed base: linear, angular velocity
   std::string material = "default";

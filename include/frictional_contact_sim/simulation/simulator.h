@@ -118,6 +118,21 @@ public:
    */
   void setCommand(int body, int joint, const JointCommand& command);
   const JointCommand& command(int body, int joint) const;
+  /**
+   * @brief From the next step on the joint follows `next` once `begin` has come, until then what it follows now;
+   * continued() says how. A joint that is not under position control stays where it is until then.
+   * @param servo gains and effort limit of the servo that follows
+   * @param begin on the scenario's clock, as the times of `next` [s]
+   * @throws std::invalid_argument as setCommand, and as JointTrajectory::validate
+   */
+  void followTrajectory(int body, int joint, const JointCommand& servo, double begin, const JointTrajectory& next);
+  /** @brief A trajectory ends here: the joint's servo holds the position that is desired now. */
+  void stopTrajectory(int body, int joint);
+  /** @brief The trajectory given last, also after its end; empty when another command came. */
+  const JointTrajectory& trajectory(int body, int joint) const;
+  /** @brief What the joint's servo wants at present; where it does not hold a position the present motion. */
+  JointMotion desiredMotion(int body, int joint) const;
+  double scenarioTime() const;  ///< since the start or the last reset [s]
   /** @brief Adds a wrench; its times are on the scenario's clock. @throws std::invalid_argument naming an unknown link
    */
   void addWrench(int body, const ExternalWrench& wrench);
