@@ -127,8 +127,8 @@ void CommandListener::renumberJoints(const std::vector<int>& new_index)
     std::vector<JointTarget> kept;
     for (JointTarget target : command.targets)
     {
-      target.joint = new_index[static_cast<size_t>(target.joint)];
-      if (target.joint >= 0)
+      target.index = new_index[static_cast<size_t>(target.index)];
+      if (target.index >= 0)
         kept.push_back(target);
     }
     command.targets = kept;
