@@ -16,6 +16,7 @@ constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort 
 ServoRows::ServoRows(std::vector<Body>& bodies, RowMemory& memory)
   : bodies_(bodies), memory_(name(), 1, bodies, memory), first_{0}
 {
+  int most_velocities = 0;
   for (size_t b = 0; b < bodies.size(); ++b)
   {
     const BodyModel& model = bodies[b].model;
@@ -29,7 +30,9 @@ ServoRows::ServoRows(std::vector<Body>& bodies, RowMemory& memory)
     }
     first_.push_back(static_cast<int>(servos_.size()));
     followers_.push_back(findFollowers(model.tree, servo_of_.back()));
+    most_velocities = std::max(most_velocities, model.tree.nv);
   }
+  gravity_.resize(most_velocities);
 }
 
 /** Mimic joints by the joint that has the servo, chains of them too (circles are refused when a model is loaded). */
@@ -91,8 +94,7 @@ void ServoRows::begin(const StepContext& context)
 void ServoRows::addGravity(const StepContext& context, int body)
 {
   Body& held = bodies_[body];
-  gravity_.resize(held.model.tree.nv);
-  computeGravityForces(held.model.tree, context.gravity, held.middle, gravity_);
+  computeGravityForces(held.model.tree, context.gravity, held.middle, gravity_.head(held.model.tree.nv));
   const auto add = [&](Servo& servo, double force)
   {
     if (held.state.drives[servo.joint].command.mode != JointCommand::Mode::EFFORT)

@@ -60,6 +60,18 @@ std::string complaint(const std::string& name, const XmlRpcValue& value)
   return "";
 }
 
+TEST(ParametersTest, GravityCompensationGoesForTheBodiesOfAScenarioFileToo)
+{
+  XmlRpcValue tree;
+  tree["scenario"] = std::string(PROJECT_DIR) + "/config/scenarios/grasp.yaml";
+  EXPECT_FALSE(readParameters(tree, "").scenario.bodies.at(0).gravity_compensation);
+  tree["gravity_compensation"] = true;
+  const NodeParameters parameters = readParameters(tree, "");
+  EXPECT_THAT(parameters.warnings, IsEmpty());
+  for (const BodySpec& body : parameters.scenario.bodies)
+    EXPECT_TRUE(body.gravity_compensation) << body.name;
+}
+
 TEST(ParametersTest, DefaultsAreThoseOfTheContract)
 {
   const NodeParameters parameters = readParameters(XmlRpc::XmlRpcValue(), ROBOT);

@@ -9,7 +9,7 @@ import node_runner
 from frictional_contact_sim.srv import Step
 
 DT = 0.001  # [s]
-ARRIVAL = 0.3  # a message is there after this long, the machine may be loaded [s]
+ARRIVAL = 0.2  # a message is there after this long, the machine may be loaded [s]
 ARM = {"yaw": 0.2, "shoulder": -0.7, "elbow": 1.7, "wrist": 0.5, "left_finger": 0.03}  # start [rad], [m]
 
 

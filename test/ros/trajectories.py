@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
 """~command/trajectory and ~follow_joint_trajectory: the way that the joints go, replacement, tolerances, refusals."""
-import time
 import unittest
 
 import actionlib
@@ -13,7 +12,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 import node_runner
 from frictional_contact_sim.msg import (FollowJointTrajectoryAction, FollowJointTrajectoryGoal,
                                         FollowJointTrajectoryResult, JointTolerance)
-from stepped_node import ARM, ARRIVAL, SteppedNode, value
+from stepped_node import ARM, SteppedNode, value
 
 JOINTS = ["yaw", "elbow"]
 # The most that a joint is behind: a/w^2 of a servo of 40 rad/s and 2.9 rad/s^2, and the URDF's damper over kp [rad].
@@ -107,7 +106,6 @@ class TrajectoriesTest(unittest.TestCase):
                (trajectory(good, stamp=rospy.Time(1.7e9)), "use_sim_time")]
         for message, _ in bad:
             self.arm.give("command/trajectory", message)
-            time.sleep(0.5 * ARRIVAL)  # ten different lines a second are shown
         state = self.arm.step(300)
         for joint, start in ARM.items():
             self.assertAlmostEqual(start, value(state, "position", joint), delta=1e-6)

@@ -5,6 +5,7 @@
 
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/allocation_counter.h"
 
 namespace frictional_contact_sim
 {
@@ -272,6 +273,33 @@ TEST(GravityCompensationTest, ALimbOfAFloatingBodyHoldsWithoutDroop)
   run(simulator, 1000);
   EXPECT_NEAR(simulator.position(0)[7], 0.9, 1e-6);
   EXPECT_NEAR(simulator.effort(0, simulator.model(0).findJoint("hinge")), -0.5 * GRAVITY * 0.1 * std::sin(0.9), 1e-6);
+}
+
+TEST(GravityCompensationTest, StepsUnderTrajectoriesDoNotAllocate)
+{
+  Scenario scene = hoist(1000.0);
+  BodySpec body;
+  body.name = "arm";
+  body.urdf_path = std::string(PROJECT_DIR) + "/urdf/double_pendulum.urdf";
+  body.hold_initial_position = true;
+  scene.bodies.push_back(body);
+  for (BodySpec& spec : scene.bodies)
+    spec.gravity_compensation = true;
+  Simulator simulator(scene);
+  JointTrajectory trajectory;
+  trajectory.points.resize(1);
+  trajectory.points[0].time = 1.0;
+  trajectory.points[0].motion.position = 0.5;
+  trajectory.points[0].order = 5;
+  simulator.followTrajectory(0, simulator.model(0).findJoint("lift"), {}, 0.0, trajectory);
+  simulator.followTrajectory(1, simulator.model(1).findJoint("elbow"), {}, 0.2, trajectory);
+  for (int step = 0; step < 100; ++step)
+    simulator.step();
+  const test_support::AllocationCounter counter;
+  for (int step = 0; step < 1000; ++step)
+    simulator.step();
+  EXPECT_EQ(counter.count(), 0);
+  EXPECT_NEAR(simulator.position(0)[0], 0.5, 1e-3);
 }
 
 }  // namespace frictional_contact_sim

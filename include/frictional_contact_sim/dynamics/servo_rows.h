@@ -62,7 +62,7 @@ private:
   std::vector<std::vector<int>> servo_of_;  ///< body, joint: index in servos_, -1 = none
   std::vector<int> first_;  ///< bodies + 1: first servo of each
   std::vector<std::vector<Follower>> followers_;  ///< bodies
-  Eigen::VectorXd gravity_;  ///< scratch: generalized force that holds a body
+  Eigen::VectorXd gravity_;  ///< scratch: generalized force that holds a body, as long as the largest needs
 };
 
 }  // namespace frictional_contact_sim
