@@ -29,13 +29,10 @@ std::string linkOf(const Simulator& simulator, const NameTable& names, int body,
   return "";
 }
 
-int requireBody(const std::string& field, const std::string& name, const Simulator& simulator, const NameTable& names)
+[[noreturn]] void failBody(const std::string& field, const std::string& name, const NameTable& names)
 {
-  const int body = simulator.findBody(name);
-  if (body < 0)
-    throw RequestError(field + ": found '" + inOneLine(name) + "', " + didYouMean(name, names.bodies) +
-                       "expected one of " + inOneLine(joinNames(names.bodies)));
-  return body;
+  throw RequestError(field + ": found '" + inOneLine(name) + "', " + didYouMean(name, names.bodies) +
+                     "expected one of " + inOneLine(joinNames(names.bodies)));
 }
 
 std::vector<std::string> linkNames(const Simulator& simulator, const NameTable& names, int body)
@@ -128,9 +125,10 @@ LinkRef readLink(const std::string& side, const std::string& body, const std::st
                  const NameTable& names)
 {
   const int named = body.empty() ? -1 : simulator.findBody(body);
-  const bool is_world = (body == WORLD_FRAME && named < 0) || (body.empty() && link == WORLD_FRAME);
-  if (!body.empty() && !(is_world && link.empty()) && named < 0)
-    requireBody("body" + side, body, simulator, names);  // throws
+  if (named < 0 && body == WORLD_FRAME && (link.empty() || link == WORLD_FRAME))
+    return {};
+  if (named < 0 && !body.empty())
+    failBody("body" + side, body, names);
   std::vector<LinkRef> found;
   for (int b = 0; b < simulator.bodyCount(); ++b)
   {
@@ -140,7 +138,7 @@ LinkRef readLink(const std::string& side, const std::string& body, const std::st
   }
   if (found.size() == 1)
     return found.front();
-  if (is_world)
+  if (body.empty() && link == WORLD_FRAME)
     return {};
   const std::string field = side == "frame_id" ? side : "link" + side;
   if (found.size() > 1)
