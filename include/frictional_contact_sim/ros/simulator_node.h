@@ -56,6 +56,7 @@ private:
   void setPaused(bool paused);
   void reset();
   void resetTime();
+  void settle();
   bool stepService(Step::Request& request, Step::Response& response);
 
   NodeParameters parameters_;
