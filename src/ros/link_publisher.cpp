@@ -10,10 +10,10 @@ constexpr std::uint32_t QUEUE = 2000;  // as the other topics of every step
 }  // namespace
 
 LinkPublisher::LinkPublisher(ros::NodeHandle& private_node, const Simulator& simulator, const NameTable& names,
-                             LinkForces& forces)
+                             LinkForces& forces, bool advertised)
   : simulator_(simulator), names_(names), forces_(forces)
 {
-  for (int body = 0; body < simulator.bodyCount(); ++body)
+  for (int body = 0; advertised && body < simulator.bodyCount(); ++body)
     for (int frame = 0; frame < static_cast<int>(simulator.model(body).frames.size()); ++frame)
     {
       const std::string link = topicName(names.frames[body][frame]);

@@ -110,6 +110,7 @@ ConfigKeys nodeKeys(NodeParameters& parameters)
           key("hold_limit", parameters.hold_limit, notNegative()),
           key("publish_base_tf", parameters.publish_base_tf),
           key("publish_link_tf", parameters.publish_link_tf),
+          key("link_topics", parameters.link_topics),
           key("publish_clock", parameters.publish_clock),
           key("seed", parameters.seed, 0)};
 }

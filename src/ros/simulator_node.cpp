@@ -23,6 +23,7 @@ constexpr std::uint32_t MAX_STEPS_PER_CALL = 100000;  // of ~step
 constexpr double IDLE_PERIOD = 0.02;  // [s]
 constexpr double CLOCK_PERIOD = 0.1;  // of /clock while nothing moves [s]
 constexpr double SETTLING_TIME = 0.5;  // between a recorder's subscription and its readiness [s]
+constexpr double ARRIVAL_TIME = 0.02;  // of a message at a subscriber on this machine [s]
 constexpr double COMPLAINT_DELAY = 5.0;  // [s]
 constexpr double FAILURE_PERIOD = 1.0;  // between two lines about failed steps of a run that goes on [s]
 
@@ -180,12 +181,28 @@ void SimulatorNode::reset()
     outcome_ = Outcome::FAILED;
 }
 
+/** @brief Until what has been published is with its subscribers, as a rule. */
+void SimulatorNode::settle()
+{
+  delivery_.flushPublishQueues();
+  ros::WallDuration(ARRIVAL_TIME).sleep();
+}
+
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
+<<<<<<< .merge_file_u5NE1w
   commands_.forgetPending();
   publisher_->restartStamps();
   publisher_->publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
+=======
+  // Who keeps a tf buffer empties it when the clock jumps back: transforms from before must have arrived by then, and
+  // those from after must come later, or they stay in it as the future and the past.
+  publisher_.restartStamps();
+  settle();
+  publisher_.publishClock();
+  settle();
+>>>>>>> .merge_file_hlq3dX
   if (paused_)
     publisher_->publishState();
   pacer_.restart(simulator_.time(), wallSeconds());

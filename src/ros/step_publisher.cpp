@@ -74,7 +74,7 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   sensors_.emplace(node, private_node, simulator, names, forces_, parameters.seed);
   for (const ros::Publisher& publisher : sensors_->publishers())
     data_topics_.insert(publisher.getTopic());
-  links_.emplace(private_node, simulator, names, forces_);
+  links_.emplace(private_node, simulator, names, forces_, parameters.link_topics);
   data_topics_.merge(links_->topics());
   publishStaticTransforms();
 }

@@ -49,28 +49,35 @@ const MultibodyData& LinkForces::motion(int body)
   return forces.motion;
 }
 
-/** (force; torque about data.reference), world axes. */
-Vector6d LinkForces::contactSum(const MultibodyData& data, int body, int frame) const
+/** Contact forces on the frames of a body: (force; torque about data.reference), world axes. */
+template <typename Add>
+void LinkForces::forEachContact(const MultibodyData& data, int body, const Add& add) const
 {
-  Vector6d sum = Vector6d::Zero();
   const double dt = simulator_.report().dt;
   for (const ContactState& contact : simulator_.contacts())
     for (const auto& [handle, sign] : {std::pair(contact.shape_a, 1.0), std::pair(contact.shape_b, -1.0)})
     {
       const ShapeInfo& shape = simulator_.shape(handle);
-      if (shape.body != body || shape.frame != frame)
+      if (shape.body != body)
         continue;
       const Eigen::Vector3d force = sign / dt * contact.impulse;
-      sum.head<3>() += force;
-      sum.tail<3>() += (contact.position - data.reference).cross(force);
+      Vector6d wrench;
+      wrench << force, (contact.position - data.reference).cross(force);
+      add(shape.frame, wrench);
     }
-  return sum;
 }
 
 Vector6d LinkForces::contactWrench(int body, int frame)
 {
   const MultibodyData& data = motion(body);
-  return localWrench(data, framePose(simulator_.model(body), data, frame), contactSum(data, body, frame));
+  Vector6d sum = Vector6d::Zero();
+  forEachContact(data, body,
+                 [&](int touched, const Vector6d& wrench)
+                 {
+                   if (touched == frame)
+                     sum += wrench;
+                 });
+  return localWrench(data, framePose(simulator_.model(body), data, frame), sum);
 }
 
 Vector6d LinkForces::jointWrench(int body, int frame)
@@ -80,9 +87,8 @@ Vector6d LinkForces::jointWrench(int body, int frame)
   const MultibodyData& data = motion(body);
   if (forces.wrenches_of != state_)
   {
-    forces.applied.resize(model.frames.size());
-    for (size_t i = 0; i < model.frames.size(); ++i)
-      forces.applied[i] = contactSum(data, body, static_cast<int>(i));
+    forces.applied.assign(model.frames.size(), Vector6d::Zero());
+    forEachContact(data, body, [&](int touched, const Vector6d& wrench) { forces.applied[touched] += wrench; });
     addExternalWrenches(simulator_.workspace(body), data, middleOfStep(simulator_.state(), simulator_.report().dt),
                         forces.applied);
     computeJointWrenches(model, data, simulator_.scenario().gravity, forces.applied, forces.joint_wrenches);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -131,8 +132,17 @@ void visitNames(StateArchive& archive, const Simulator& simulator)
   }
 }
 
+/** A device or a pipe may never end, and must not be renamed over. */
+bool isOtherThanFile(const std::string& path)
+{
+  std::error_code error;
+  return std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
+}
+
 std::string readPayload(const std::string& path)
 {
+  if (isOtherThanFile(path))
+    throw StateError("is not a regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw StateError("cannot be read");
@@ -167,6 +177,8 @@ void saveState(const Simulator& simulator, const std::string& path)
   append(bytes, checksum(writer.bytes), 8);
   bytes += writer.bytes;
 
+  if (isOtherThanFile(path))
+    throw StateError(path + ": cannot be written: it is not a regular file");
   const std::string part = path + ".part" + std::to_string(getpid());
   std::ofstream file(part, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

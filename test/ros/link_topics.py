@@ -154,6 +154,13 @@ class LinkTopicsTest(NodeTest):
         self.assertAlmostEqual(10.0 * G, message.wrench.force.z, 6)
 
 
+    def test_a_node_without_them_advertises_none(self):
+        self.start({"link_topics": False}, node_runner.box_urdf())
+        published = [topic for topic, _ in rospy.get_published_topics(node_runner.NAME)]
+        self.assertIn(node_runner.NAME + "/contacts", published)
+        self.assertEqual([], [topic for topic in published if "/wrench/" in topic or "/contacts/" in topic])
+
+
 class SensorsTest(NodeTest):
     SCENE = """
 ground:

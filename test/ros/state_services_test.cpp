@@ -140,6 +140,12 @@ TEST_F(StateServiceTest, ALoadThatIsRefusedChangesNothing)
   storeState(request, other_bench.simulator, slot_, response);
   bench_.expectRefused("number of bodies is 1, expected 2", [&] { load(request.file, bench_.simulator); });
   bench_.expectRefused("cannot be written", [&] { save(folder_ + "/no/such/folder/state"); });
+  for (const char* device : {"/dev/zero", "/dev/null"})
+  {
+    bench_.expectRefused("is not a regular file", [&] { load(device, bench_.simulator); });
+    bench_.expectRefused("is not a regular file", [&] { save(device); });
+  }
+  bench_.expectRefused("is not a regular file", [&] { save(folder_); });
 }
 
 TEST_F(StateServiceTest, ALinkOfATreeGetsPoseAndVelocityAndJointsStay)

@@ -22,7 +22,9 @@ namespace frictional_contact_sim
 class LinkPublisher
 {
 public:
-  LinkPublisher(ros::NodeHandle& private_node, const Simulator& simulator, const NameTable& names, LinkForces& forces);
+  /** @param advertised false: there are no such topics */
+  LinkPublisher(ros::NodeHandle& private_node, const Simulator& simulator, const NameTable& names, LinkForces& forces,
+                bool advertised);
   LinkPublisher(const LinkPublisher&) = delete;
   LinkPublisher& operator=(const LinkPublisher&) = delete;
 

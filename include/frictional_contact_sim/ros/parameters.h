@@ -50,6 +50,7 @@ struct NodeParameters
   int max_dumps = 20;  ///< at most so many files a run
   std::string bag;  ///< file that a recorder is to write: its folder is checked
   bool publish_base_tf = true;
+  bool link_topics = true;  ///< those of single links and joints are advertised
   bool publish_link_tf = false;  ///< of all links, where no robot_state_publisher does it
   bool publish_clock = true;  ///< false where another node publishes /clock
   std::map<std::string, ServoGains> servo_gains;  ///< by joint; `default` for all others

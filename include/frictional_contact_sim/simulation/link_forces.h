@@ -41,7 +41,8 @@ private:
   };
 
   const MultibodyData& motion(int body);
-  Vector6d contactSum(const MultibodyData& data, int body, int frame) const;
+  template <typename Add>
+  void forEachContact(const MultibodyData& data, int body, const Add& add) const;
 
   const Simulator& simulator_;
   std::vector<BodyForces> bodies_;
