@@ -94,4 +94,4 @@ class PickAndPlaceTest(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("pick_and_place_test", disable_rostime=True)
-    rostest.rosrun("frictional_contact_sim", "pick_and_place", PickAndPlaceTest)
+    rostest.rosrun("frictional_contact_sim", "pick_and_place_test", PickAndPlaceTest)
