@@ -79,8 +79,8 @@ NameTable makeNameTable(const Simulator& simulator, const NameRules& rules)
     for (const Frame& frame : model.frames)
     {
       frames.push_back(nameOf(rules, rules.links, simulator.bodyName(body), frame.name));
-      frame_joints.push_back(
-          frame.joint.empty() ? "" : nameOf(rules, rules.joints, simulator.bodyName(body), frame.joint));
+      frame_joints.push_back(frame.joint.empty() ? ""
+                                                 : nameOf(rules, rules.joints, simulator.bodyName(body), frame.joint));
     }
     const int root = model.findFrame(model.links.front().name);
     table.roots.push_back(root >= 0 ? frames[root] : model.links.front().name);

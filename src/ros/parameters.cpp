@@ -209,8 +209,7 @@ NodeParameters readParameters(const XmlRpc::XmlRpcValue& tree, const std::string
   if (!file.empty())
   {
     scenario = loadScenarioFile(findScenario(file));
-    keys =
-        unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + servoKeys(all);
+    keys = unusedKeys(robotKeys(robot) + worldKeys(scenario), "the scenario file", parameters) + servoKeys(all);
   }
   else if (root.has("robots"))
   {
