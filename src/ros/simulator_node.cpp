@@ -191,18 +191,13 @@ void SimulatorNode::settle()
 void SimulatorNode::resetTime()
 {
   simulator_.resetTime();
-<<<<<<< .merge_file_u5NE1w
   commands_.forgetPending();
-  publisher_->restartStamps();
-  publisher_->publishClock();  // before the first transform: who keeps a tf buffer empties it when time jumps back
-=======
   // Who keeps a tf buffer empties it when the clock jumps back: transforms from before must have arrived by then, and
   // those from after must come later, or they stay in it as the future and the past.
-  publisher_.restartStamps();
+  publisher_->restartStamps();
   settle();
-  publisher_.publishClock();
+  publisher_->publishClock();
   settle();
->>>>>>> .merge_file_hlq3dX
   if (paused_)
     publisher_->publishState();
   pacer_.restart(simulator_.time(), wallSeconds());

@@ -70,14 +70,10 @@ private:
   void setPaused(bool paused);
   void reset();
   void resetTime();
-<<<<<<< .merge_file_0VmsFe
   void showSetState();
   void followSettings(double real_time_factor);
   void takeSteps(const Step::Request& request, Step::Response& response);
-=======
   void settle();
-  bool stepService(Step::Request& request, Step::Response& response);
->>>>>>> .merge_file_fJ2wqm
 
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;
