@@ -142,13 +142,13 @@ void Simulator::Impl::takeOver(const Impl& old, const std::vector<int>& new_body
   state = present;
   start_outcome = old.start_outcome;
   outcome = StepOutcome{};
-  report = old.report;
   dump_folder = old.dump_folder;
   dump_name = old.dump_name;
   dumps_left = old.dumps_left;
   joinWelded();
   updateEnds();
   rememberGood();
+  restartReport();  // the last step's problem and answer stay with the old one
 }
 
 /** What a body brings into the world or takes out of it is no work. @param sign 1: brings */

@@ -78,6 +78,42 @@ TEST(LinkForcesTest, InFlightAJointTransmitsTheRateOfMomentumBeyond)
   EXPECT_LT(forces.jointWrench(0, 0).norm(), 1e-8);
 }
 
+TEST(LinkForcesTest, AWeldCountsAmongWhatActsOnALink)
+{
+  Scenario scenario = groundScene(0.5);
+  addBody(scenario, "a", PLATED_BOX, poseAt(0.0, 0.0, 50.0)).angular_velocity = {3.0, -2.0, 1.0};
+  addBody(scenario, "b", PLATED_BOX, poseAt(0.5, 0.1, 50.2));
+  Simulator simulator(scenario);
+  simulator.attach({0, "plate"}, {1, "box"});
+  for (int i = 0; i < 50; ++i)
+    simulator.step();
+  LinkForces forces(simulator);
+  EXPECT_GT(simulator.weldWrench(0).norm(), 1.0);
+  for (const int body : {0, 1})
+    EXPECT_LT(forces.jointWrench(body, 0).norm(),
+              1e-6 * simulator.weldWrench(0).norm());  // nothing else holds the root
+}
+
+TEST(LinkForcesTest, AfterBodiesHaveComeThereIsNoStepYet)
+{
+  Scenario scenario = groundScene(0.5);
+  BodySpec late = addBody(scenario, "late", PLATED_BOX, poseAt(1.0, 0.0, 0.0));
+  scenario.bodies.pop_back();
+  addBody(scenario, "plated", PLATED_BOX, poseAt(0.0, 0.0, 0.0));
+  Simulator simulator(scenario);
+  simulator.step();
+  simulator.spawn(late);
+  LinkForces forces(simulator);
+  EXPECT_FALSE(forces.hasStep());
+  simulator.step();
+  forces.restart();
+  ASSERT_TRUE(forces.hasStep());
+  for (const int body : {0, 1})
+    EXPECT_NEAR(forces.jointWrench(body, 1)[2], 2 * GRAVITY, 1e-8);
+  simulator.remove("plated");
+  EXPECT_FALSE(LinkForces(simulator).hasStep());
+}
+
 TEST(LinkForcesTest, AlongItsAxisAJointTransmitsItsDrive)
 {
   Scenario scenario = loadScenario("bodies: [{name: arm, urdf: " PROJECT_DIR
