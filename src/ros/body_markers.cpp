@@ -9,6 +9,7 @@
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/model/visual_shapes.h"
 #include "frictional_contact_sim/ros/conversions.h"
+#include "frictional_contact_sim/ros/markers.h"
 
 namespace frictional_contact_sim
 {
@@ -18,16 +19,6 @@ using visualization_msgs::Marker;
 
 constexpr float OPACITY = 0.55F;  ///< of bodies: arrows inside them are seen
 constexpr double GROUND_SIZE = 20.0;  ///< edge, in sizes of the scene
-
-std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
-{
-  std_msgs::ColorRGBA color;
-  color.r = static_cast<float>(red);
-  color.g = static_cast<float>(green);
-  color.b = static_cast<float>(blue);
-  color.a = static_cast<float>(opacity);
-  return color;
-}
 
 /** Of bodies without colours: calm ones, away from those of the modes. */
 std_msgs::ColorRGBA paletteColor(int body)

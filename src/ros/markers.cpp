@@ -9,6 +9,16 @@
 
 namespace frictional_contact_sim
 {
+std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
+{
+  std_msgs::ColorRGBA color;
+  color.r = static_cast<float>(red);
+  color.g = static_cast<float>(green);
+  color.b = static_cast<float>(blue);
+  color.a = static_cast<float>(opacity);
+  return color;
+}
+
 namespace
 {
 using visualization_msgs::Marker;
@@ -27,16 +37,6 @@ constexpr double HEAD_LENGTH = 0.08;
 constexpr double CONE_HEIGHT = 0.1;
 constexpr double LETTERS = 0.06;
 constexpr double LEGEND_GAP = 0.15;  // above the bodies
-
-std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity)
-{
-  std_msgs::ColorRGBA color;
-  color.r = static_cast<float>(red);
-  color.g = static_cast<float>(green);
-  color.b = static_cast<float>(blue);
-  color.a = static_cast<float>(opacity);
-  return color;
-}
 
 std_msgs::ColorRGBA colorOf(ContactMode mode, double opacity)
 {

@@ -206,6 +206,7 @@ void SimulatorNode::resetTime()
 /** @brief The state, perhaps the time too, is another one. */
 void SimulatorNode::showSetState()
 {
+  trajectories_.update();
   if (paused_)
     publisher_->publishState();
   pacer_.restart(simulator_.time(), wallSeconds());

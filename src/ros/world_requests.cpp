@@ -40,7 +40,7 @@ void SimulatorNode::addWorldServices()
       {
         const auto find = [this](const std::string& parameter)
         { return findDescription(node_, private_node_, parameter); };
-        const BodySpec spec = readSpawn(request, simulator_, names_, find);
+        const BodySpec spec = readSpawn(request, frames_, find);
         changeBodies(
             [&]
             {

@@ -1,23 +1,19 @@
 #include "frictional_contact_sim/ros/world_services.h"
 
 #include <geometry_msgs/Pose.h>
-#include <geometry_msgs/Twist.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "frictional_contact_sim/config/nearest_name.h"
-#include "frictional_contact_sim/model/kinematics.h"
-#include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/services.h"
 #include "frictional_contact_sim/ros/simulator_node.h"
+#include "request_fields.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double UNIT = 1e-3;  // how far the length of a quaternion may be from 1
-
 /** A body's own name for the link that `name` is on topics or in its URDF; empty when it has none. */
 std::string linkOf(const Simulator& simulator, const NameTable& names, int body, const std::string& name)
 {
@@ -45,55 +41,12 @@ std::vector<std::string> linkNames(const Simulator& simulator, const NameTable& 
   return known;
 }
 
-Eigen::Vector3d toVector(const std::string& field, double x, double y, double z)
-{
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-    throw RequestError(field + ": found a number that is not finite, expected finite ones");
-  return {x, y, z};
-}
-
-Eigen::Isometry3d readPose(const geometry_msgs::Pose& message)
-{
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = toVector("pose.position", message.position.x, message.position.y, message.position.z);
-  const Eigen::Quaterniond turn(message.orientation.w, message.orientation.x, message.orientation.y,
-                                message.orientation.z);
-  if (!(std::abs(turn.norm() - 1.0) <= UNIT))
-    throw RequestError("pose.orientation: found a quaternion of length " + std::to_string(turn.norm()) +
-                       ", expected 1");
-  pose.linear() = turn.normalized().toRotationMatrix();
-  return pose;
-}
-
 /** All zero, as a request leaves it where nobody fills it in. */
 bool isGiven(const geometry_msgs::Pose& pose)
 {
   const double numbers[] = {pose.position.x,    pose.position.y,    pose.position.z,   pose.orientation.x,
                             pose.orientation.y, pose.orientation.z, pose.orientation.w};
   return std::any_of(std::begin(numbers), std::end(numbers), [](double number) { return number != 0.0; });
-}
-
-geometry_msgs::Pose toMessage(const Eigen::Isometry3d& pose)
-{
-  geometry_msgs::Pose message;
-  message.position.x = pose.translation().x();
-  message.position.y = pose.translation().y();
-  message.position.z = pose.translation().z();
-  const Eigen::Quaterniond turn(pose.linear());
-  message.orientation.x = turn.x();
-  message.orientation.y = turn.y();
-  message.orientation.z = turn.z();
-  message.orientation.w = turn.w();
-  return message;
-}
-
-Eigen::Isometry3d framePoseOf(const Simulator& simulator, const NameTable& names, const std::string& frame)
-{
-  if (frame.empty() || frame == WORLD_FRAME)
-    return Eigen::Isometry3d::Identity();
-  const LinkRef link = readLink("frame_id", "", frame, simulator, names);
-  const MultibodyModel& model = simulator.model(link.body);
-  return framePose(model, simulator.data(link.body), model.findFrame(link.link));
 }
 
 BaseType readBase(const std::string& base)
@@ -140,7 +93,7 @@ LinkRef readLink(const std::string& side, const std::string& body, const std::st
     return found.front();
   if (body.empty() && link == WORLD_FRAME)
     return {};
-  const std::string field = side == "frame_id" ? side : "link" + side;
+  const std::string field = "link" + side;
   if (found.size() > 1)
     throw RequestError(field + ": found '" + inOneLine(link) + "', which " + std::to_string(found.size()) +
                        " bodies have: name one of them");
@@ -167,8 +120,7 @@ void detach(const Detach::Request& request, Simulator& simulator, const NameTabl
                    readLink("_b", request.body_b, request.link_b, simulator, names));
 }
 
-BodySpec readSpawn(const Spawn::Request& request, const Simulator& simulator, const NameTable& names,
-                   const FindDescription& find)
+BodySpec readSpawn(const Spawn::Request& request, FrameResolver& frames, const FindDescription& find)
 {
   if (!isTopicPart(request.name) || request.name == WORLD_FRAME)
     throw RequestError("name: found '" + inOneLine(request.name) +
@@ -187,13 +139,11 @@ BodySpec readSpawn(const Spawn::Request& request, const Simulator& simulator, co
     throw RequestError("description: " + std::string(error.what()));
   }
   spec.base = readBase(request.base);
-  const Eigen::Isometry3d frame = framePoseOf(simulator, names, request.frame_id);
+  const Eigen::Isometry3d frame = frames.pose("frame_id", request.frame_id);
   if (isGiven(request.pose))
-    spec.pose = frame * readPose(request.pose);
-  const geometry_msgs::Vector3& linear = request.twist.linear;
-  const geometry_msgs::Vector3& angular = request.twist.angular;
-  spec.linear_velocity = frame.linear() * toVector("twist.linear", linear.x, linear.y, linear.z);
-  spec.angular_velocity = frame.linear() * toVector("twist.angular", angular.x, angular.y, angular.z);
+    spec.pose = frame * readPose("pose", request.pose);
+  spec.linear_velocity = frame.linear() * readVector("twist.linear", request.twist.linear, LARGEST_SPEED, "m/s");
+  spec.angular_velocity = frame.linear() * readVector("twist.angular", request.twist.angular, LARGEST_SPEED, "rad/s");
   readJoints(request, spec);
   spec.hold_initial_position = request.hold_initial_position;
   return spec;

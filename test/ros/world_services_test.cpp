@@ -142,12 +142,13 @@ TEST(WorldRequestTest, ASpawnIsReadInTheFrameOfALink)
   Spawn::Request request;
   request.name = "new";
   request.urdf = pendulum();
-  EXPECT_FALSE(readSpawn(request, simulator, names, noDescription).pose) << "all zero: not given";
+  FrameResolver frames(simulator, names, false);
+  EXPECT_FALSE(readSpawn(request, frames, noDescription).pose) << "all zero: not given";
   request.frame_id = "rod";
   request.pose.position.x = 1.0;
   request.pose.orientation.w = 1.0;
   request.twist.linear.z = 2.0;
-  const BodySpec spec = readSpawn(request, simulator, names, noDescription);
+  const BodySpec spec = readSpawn(request, frames, noDescription);
   // The rod is turned by 0.5 about y: its x axis points to (cos, 0, -sin), its z axis to (sin, 0, cos).
   EXPECT_LE((spec.pose->translation() - Eigen::Vector3d(3.0 + std::cos(0.5), 0.0, 1.0 - std::sin(0.5))).norm(), 1e-12);
   EXPECT_LE((spec.linear_velocity - 2.0 * Eigen::Vector3d(std::sin(0.5), 0.0, std::cos(0.5))).norm(), 1e-12);

@@ -6,12 +6,16 @@
  * newtons, `legend`.
  */
 #include <ros/time.h>
+#include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include "frictional_contact_sim/simulation/simulator.h"
 
 namespace frictional_contact_sim
 {
+/** @brief Components in [0, 1]. */
+std_msgs::ColorRGBA makeColor(double red, double green, double blue, double opacity);
+
 /** @brief How large things are drawn. */
 struct MarkerScale
 {

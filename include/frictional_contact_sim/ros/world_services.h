@@ -8,6 +8,7 @@
 #include <frictional_contact_sim/Detach.h>
 #include <frictional_contact_sim/Spawn.h>
 
+#include "frictional_contact_sim/ros/frames.h"
 #include "frictional_contact_sim/ros/names.h"
 #include "frictional_contact_sim/ros/parameters.h"
 #include "frictional_contact_sim/simulation/simulator.h"
@@ -22,8 +23,7 @@ void attach(const Attach::Request& request, Simulator& simulator, const NameTabl
 void detach(const Detach::Request& request, Simulator& simulator, const NameTable& names);
 
 /** @brief What is to be spawned. @param find description parameters */
-BodySpec readSpawn(const Spawn::Request& request, const Simulator& simulator, const NameTable& names,
-                   const FindDescription& find);
+BodySpec readSpawn(const Spawn::Request& request, FrameResolver& frames, const FindDescription& find);
 /** @brief Adds it. @throws RequestError when its impact has no answer and the failure policy leaves it out */
 void spawn(const BodySpec& spec, Simulator& simulator);
 
