@@ -98,7 +98,7 @@ class CheckDocsTest(unittest.TestCase):
                 ('docs/architecture.md', '[residuals.md](residuals.md)', '[residuals.md](residual.md)'),
                 ('docs/architecture.md', '`dynamics/row_source.h`', '`dynamics/row_sources_of.h`'),
                 ('docs/interfaces.md', '`~marker_rate`', '`~marker_frequency`'),
-                ('README.md', '`~set_paused`', '`~set_pause`'),
+                ('docs/migration.md', '`~set_paused`', '`~set_pause`'),
                 ('CHANGELOG.rst', '``scripts/demo``', '``scripts/demonstrate``'),
                 ('launch/simulate.launch', 'simulate.launch robot:=quadruped', 'simulate.launch robo:=quadruped'),
                 ('include/frictional_contact_sim/problem/residual.h', 'docs/residuals.md', 'docs/the_plan.md'),
