@@ -114,13 +114,17 @@ SimulationState carriedState(const SimulationState& from, SimulationState to, co
   return to;
 }
 
-double energyOf(const BodyModel& model, BodyState state, const Eigen::Vector3d& gravity)
+/** Kinetic and potential alone. */
+EnergyLedger energyOf(const BodyModel& model, BodyState state, const Eigen::Vector3d& gravity)
 {
+  EnergyLedger energy;
   if (model.tree.nv == 0)
-    return 0.0;
+    return energy;
   Body body(model, state);
   updateEnd(body);
-  return kineticEnergy(model.tree, body.end, state.v) + potentialEnergy(model.tree, body.end, gravity);
+  energy.kinetic = kineticEnergy(model.tree, body.end, state.v);
+  energy.potential = potentialEnergy(model.tree, body.end, gravity);
+  return energy;
 }
 
 Renumbering sameNumbers(size_t bodies)
@@ -156,8 +160,14 @@ void Simulator::Impl::bookArrival(int body, double sign, const Impl& of)
 {
   const auto index = static_cast<size_t>(body);
   const BodyModel& model = of.bodies[index].model;
-  state.energy_start += sign * energyOf(model, of.state.bodies[index], context.gravity);
-  start.energy_start += sign * energyOf(model, of.start.bodies[index], context.gravity);
+  for (SimulationState* booked : {&state, &start})
+  {
+    const SimulationState& source = booked == &state ? of.state : of.start;
+    const EnergyLedger energy = energyOf(model, source.bodies[index], context.gravity);
+    booked->energy.kinetic += sign * energy.kinetic;
+    booked->energy.potential += sign * energy.potential;
+    booked->energy_start += sign * (energy.kinetic + energy.potential);
+  }
   bookEnergies();
 }
 
