@@ -29,7 +29,8 @@ inline const std::vector<KnownSeeds>& knownSeeds()
        "light links turn by more than 0.3 rad a step: the scheme's order 2, not traced seed by seed",
        {97, 130, 158, 161, 178, 184, 187, 202, 234, 250, 263, 271, 277, 279, 100011, 100015}},
       {"failed",
-       "E of 1e-8 to 1e-6 on hundreds of rows, speeds that have run away, a bias that does not settle; 231: one step of "
+       "E of 1e-8 to 1e-6 on hundreds of rows, speeds that have run away, a bias that does not settle; 231: one step "
+       "of "
        "1000 since saturated servos count in the residual's scale",
        {165, 231, 234, 277, 278, 279, 100011, 100012, 100015}},
       {"penetration", "rows given up for a solve, 1.3e-5 m in ten steps", {261}},
