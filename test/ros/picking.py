@@ -93,5 +93,5 @@ class PickAndPlaceTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("pick_and_place_test", disable_rostime=True)
-    rostest.rosrun("frictional_contact_sim", "pick_and_place_test", PickAndPlaceTest)
+    rospy.init_node("picking", disable_rostime=True)
+    rostest.rosrun("frictional_contact_sim", "picking", PickAndPlaceTest)
