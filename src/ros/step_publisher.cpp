@@ -94,7 +94,7 @@ void StepPublisher::advertiseOdometry(ros::NodeHandle& private_node, int body, c
 void StepPublisher::takeOver(StepPublisher& before)
 {
   stamp_ = before.stamp_;
-  greeting_ = before.greeting_;
+  greetSubscribers(before.greeting_);
   // Those who listen already are announced to the new publishers by roscpp as if they came now, and so greeted: with a
   // stamp of its own, as in publishState.
   if (greeting_)
