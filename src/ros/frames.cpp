@@ -70,15 +70,15 @@ std::optional<LinkHandle> findLink(const Simulator& simulator, const NameTable& 
   return std::nullopt;
 }
 
-int requireBody(const NameTable& names, const std::string& body)
+int requireBody(const NameTable& names, const std::string& body, const std::string& field)
 {
   if (body.empty() && names.bodies.size() == 1)
     return 0;
   for (size_t i = 0; i < names.bodies.size(); ++i)
     if (names.bodies[i] == body)
       return static_cast<int>(i);
-  throw RequestError("body: found '" + inOneLine(body) + "', " + didYouMean(body, names.bodies) + "expected one of " +
-                     inOneLine(joinNames(names.bodies)));
+  throw RequestError(field + ": found '" + inOneLine(body) + "', " + didYouMean(body, names.bodies) +
+                     "expected one of " + inOneLine(joinNames(names.bodies)));
 }
 
 LinkHandle requireLink(const Simulator& simulator, const NameTable& names, const std::string& body,

@@ -25,12 +25,6 @@ std::string linkOf(const Simulator& simulator, const NameTable& names, int body,
   return "";
 }
 
-[[noreturn]] void failBody(const std::string& field, const std::string& name, const NameTable& names)
-{
-  throw RequestError(field + ": found '" + inOneLine(name) + "', " + didYouMean(name, names.bodies) +
-                     "expected one of " + inOneLine(joinNames(names.bodies)));
-}
-
 std::vector<std::string> linkNames(const Simulator& simulator, const NameTable& names, int body)
 {
   std::vector<std::string> known;
@@ -77,11 +71,10 @@ void readJoints(const Spawn::Request& request, BodySpec& spec)
 LinkRef readLink(const std::string& side, const std::string& body, const std::string& link, const Simulator& simulator,
                  const NameTable& names)
 {
-  const int named = body.empty() ? -1 : simulator.findBody(body);
-  if (named < 0 && body == WORLD_FRAME && (link.empty() || link == WORLD_FRAME))
+  const bool is_world = body == WORLD_FRAME && (link.empty() || link == WORLD_FRAME);
+  if (is_world && simulator.findBody(body) < 0)
     return {};
-  if (named < 0 && !body.empty())
-    failBody("body" + side, body, names);
+  const int named = body.empty() ? -1 : requireBody(names, body, "body" + side);
   std::vector<LinkRef> found;
   for (int b = 0; b < simulator.bodyCount(); ++b)
   {

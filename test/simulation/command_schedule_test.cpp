@@ -20,20 +20,9 @@ using test_support::Dice;
 
 constexpr double MASS = 2.0;
 
-/** A slider of 2 kg along x on a fixed base. */
 Scenario sliderScene()
 {
-  Scenario scene;
-  BodySpec body;
-  body.name = "slider";
-  body.urdf_xml =
-      "<robot name='slider'><link name='world'/><link name='carriage'><inertial><mass value='2'/>"
-      "<inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>"
-      "<joint name='rail' type='prismatic'><parent link='world'/><child link='carriage'/><axis xyz='1 0 0'/>"
-      "<limit lower='-10' upper='10' effort='1000' velocity='100'/></joint></robot>";
-  scene.bodies.push_back(body);
-  scene.stopping.tolerance = 1e-13;
-  return scene;
+  return railScene(10.0, 100.0);
 }
 
 Scenario scheduled(JointCommand::Mode mode, const CommandSchedule& schedule)

@@ -8,6 +8,7 @@
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state_archive.h"
 #include "frictional_contact_sim/simulation/state_file.h"
+#include "scene.h"
 #include "support/dice.h"
 
 namespace frictional_contact_sim
@@ -67,20 +68,9 @@ void expectSame(const JointMotion& a, const JointMotion& b, double tolerance, do
   EXPECT_NEAR(a.acceleration, b.acceleration, 100.0 * tolerance) << time;
 }
 
-/** A slider of 2 kg along x on a fixed base, limits +-1 m, +-2 m/s. */
 Scenario sliderScene()
 {
-  Scenario scene;
-  BodySpec body;
-  body.name = "slider";
-  body.urdf_xml =
-      "<robot name='slider'><link name='world'/><link name='carriage'><inertial><mass value='2'/>"
-      "<inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>"
-      "<joint name='rail' type='prismatic'><parent link='world'/><child link='carriage'/><axis xyz='1 0 0'/>"
-      "<limit lower='-1' upper='1' effort='1000' velocity='2'/></joint></robot>";
-  scene.bodies.push_back(body);
-  scene.stopping.tolerance = 1e-13;
-  return scene;
+  return railScene(1.0, 2.0);
 }
 
 constexpr int RAIL = 1;

@@ -81,4 +81,29 @@ void incline(Scenario& scenario, double angle)
   scenario.gravity = GRAVITY * Eigen::Vector3d(std::sin(angle), 0.0, -std::cos(angle));
 }
 
+Scenario emptySpace()
+{
+  Scenario scenario = groundScene(0.5);
+  scenario.ground.reset();
+  scenario.gravity.setZero();
+  return scenario;
+}
+
+Scenario railScene(double reach, double speed)
+{
+  std::ostringstream urdf;
+  urdf << "<robot name='slider'><link name='world'/><link name='carriage'><inertial><mass value='2'/>"
+          "<inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>"
+          "<joint name='rail' type='prismatic'><parent link='world'/><child link='carriage'/><axis xyz='1 0 0'/>"
+       << "<limit lower='" << -reach << "' upper='" << reach << "' effort='1000' velocity='" << speed
+       << "'/></joint></robot>";
+  Scenario scene;
+  BodySpec body;
+  body.name = "slider";
+  body.urdf_xml = urdf.str();
+  scene.bodies.push_back(body);
+  scene.stopping.tolerance = 1e-13;
+  return scene;
+}
+
 }  // namespace frictional_contact_sim

@@ -18,6 +18,12 @@ Eigen::Isometry3d poseAt(double x, double y, double z);
 /** Empty scenario with ground, one friction and restitution everywhere, solver tolerance 1e-13. */
 Scenario groundScene(double friction, double restitution = 0.0);
 
+/** The same without ground and gravity. */
+Scenario emptySpace();
+
+/** A slider of 2 kg along x on a fixed base: joint `rail`, limits +-reach [m] and +-speed [m/s], effort 1000 N. */
+Scenario railScene(double reach, double speed);
+
 /** Adds a free body and returns it for further settings. */
 BodySpec& addBody(Scenario& scenario, const std::string& name, const std::string& urdf, const Eigen::Isometry3d& pose);
 

@@ -22,14 +22,6 @@ LinkRef root(int body)
   return {body, "body"};
 }
 
-Scenario emptySpace()
-{
-  Scenario scenario = groundScene(0.5);
-  scenario.ground.reset();
-  scenario.gravity.setZero();
-  return scenario;
-}
-
 void run(Simulator& simulator, int steps)
 {
   for (int i = 0; i < steps; ++i)

@@ -44,14 +44,6 @@ BodySpec& addArm(Scenario& scenario)
   return arm;
 }
 
-Scenario emptySpace()
-{
-  Scenario scenario = groundScene(0.5);
-  scenario.ground.reset();
-  scenario.gravity.setZero();
-  return scenario;
-}
-
 void run(Simulator& simulator, int steps)
 {
   for (int i = 0; i < steps; ++i)

@@ -27,8 +27,8 @@ struct LinkHandle
 /** @brief A link by its name on topics or as body/link. */
 std::optional<LinkHandle> findLink(const Simulator& simulator, const NameTable& names, const std::string& name);
 
-/** @param body may be empty when there is one only @throws RequestError */
-int requireBody(const NameTable& names, const std::string& body);
+/** @param body may be empty when there is one only. @param field of the request @throws RequestError */
+int requireBody(const NameTable& names, const std::string& body, const std::string& field = "body");
 
 /**
  * @brief The link that fields `body` and `link` of a request name.
