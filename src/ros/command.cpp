@@ -156,4 +156,28 @@ JointCommand effortCommand(double target)
   return command;
 }
 
+std::vector<ClampedTarget> giveTarget(JointTarget target, Mode mode, const NameTable& names,
+                                      const std::map<std::string, ServoGains>& gains, Simulator& simulator)
+{
+  const JointHandle& handle = names.joints[target.index];
+  const Joint& joint = simulator.model(handle.body).joints[handle.joint];
+  const double position = simulator.position(handle.body)[handle.q_index];
+  std::vector<ClampedTarget> changed;
+  const auto clamp = [&](Mode quantity, double& value)
+  {
+    if (const std::optional<std::string> line = clampTarget(joint, handle.name, quantity, position, value))
+      changed.push_back({quantity, *line});
+  };
+  clamp(mode, target.target);
+  clamp(Mode::VELOCITY, target.rate);
+  clamp(Mode::EFFORT, target.feedforward);
+  JointCommand command = mode == Mode::EFFORT     ? effortCommand(target.target)
+                         : mode == Mode::VELOCITY ? velocityCommand(target.target, handle.name, gains)
+                                                  : positionCommand(target.target, handle.name, gains);
+  command.rate = target.rate;
+  command.feedforward = target.feedforward;
+  simulator.setCommand(handle.body, handle.joint, command);
+  return changed;
+}
+
 }  // namespace frictional_contact_sim

@@ -82,36 +82,13 @@ void CommandListener::giveDue()
   }
 }
 
+/** A joint has one warning of each kind: who commands beyond its limits does so at every step. */
 void CommandListener::give(const Command& command)
 {
   for (const JointTarget& target : command.targets)
-    give(command, target);
-}
-
-void CommandListener::give(const Command& command, const JointTarget& wanted)
-{
-  const JointHandle& handle = names_.joints[wanted.index];
-  JointTarget target = wanted;
-  clamp(command.topic, handle, command.mode, target.target);
-  clamp(command.topic, handle, Mode::VELOCITY, target.rate);
-  clamp(command.topic, handle, Mode::EFFORT, target.feedforward);
-  JointCommand joint_command = command.mode == Mode::EFFORT ? effortCommand(target.target)
-                               : command.mode == Mode::VELOCITY
-                                   ? velocityCommand(target.target, handle.name, servo_gains_)
-                                   : positionCommand(target.target, handle.name, servo_gains_);
-  joint_command.rate = target.rate;
-  joint_command.feedforward = target.feedforward;
-  simulator_.setCommand(handle.body, handle.joint, joint_command);
-}
-
-/** @brief A joint has one warning of each kind: who commands beyond its limits does so at every step. */
-void CommandListener::clamp(const std::string& topic, const JointHandle& handle, Mode mode, double& target)
-{
-  const Joint& joint = simulator_.model(handle.body).joints[handle.joint];
-  const double position = simulator_.position(handle.body)[handle.q_index];
-  const std::optional<std::string> line = clampTarget(joint, handle.name, mode, position, target);
-  if (line && clamped_.emplace(handle.name, mode).second)
-    ROS_WARN_STREAM("~" << topic << ": " << *line << "; further ones of this joint are not shown");
+    for (const ClampedTarget& clamped : giveTarget(target, command.mode, names_, servo_gains_, simulator_))
+      if (clamped_.emplace(names_.joints[target.index].name, clamped.quantity).second)
+        ROS_WARN_STREAM("~" << command.topic << ": " << clamped.line << "; further ones of this joint are not shown");
 }
 
 void CommandListener::warn(const std::string& line)

@@ -94,7 +94,11 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   for (const std::string& joint : names_.unsupported_joints)
     ROS_WARN_STREAM("joint '" << joint << "' has more than one coordinate: it is simulated, but not in joint_states");
   simulator_.setDumpFolder(parameters.dump_dir, parameters.max_dumps);
-  setServoGains();
+  for (const auto& gains : parameters_.servo_gains)
+    if (gains.first != "default" && findJoint(names_, gains.first) < 0)
+      throw ParameterError("~servo_gains: unknown joint '" + gains.first + "'");
+  for (int body = 0; body < simulator_.bodyCount(); ++body)
+    setServoGains(body);
   simulator_.setStart();  // a reset keeps the gains
   advertiseServices();
   reconfiguration_ = std::make_unique<Reconfiguration>(
@@ -115,15 +119,14 @@ RunState SimulatorNode::runState() const
           simulator_.scenario().stopping.tolerance, delivery_.dropped()};
 }
 
-/** @brief ~servo_gains for the servos that hold the initial position. */
-void SimulatorNode::setServoGains()
+/** @brief ~servo_gains for the servos that hold the initial position of a body. */
+void SimulatorNode::setServoGains(int of_body)
 {
-  for (const auto& gains : parameters_.servo_gains)
-    if (gains.first != "default" && findJoint(names_, gains.first) < 0)
-      throw ParameterError("~servo_gains: unknown joint '" + gains.first + "'");
   for (const int index : names_.actuated)
   {
     const JointHandle& joint = names_.joints[index];
+    if (joint.body != of_body)
+      continue;
     const BodySpec& body = simulator_.scenario().bodies[joint.body];
     const std::string& urdf_name = simulator_.model(joint.body).joints[joint.joint].name;
     if (!parameters_.servo_gains.empty() && body.hold_initial_position && body.commands.count(urdf_name) == 0)

@@ -17,6 +17,8 @@ void SimulatorNode::advertiseRequests()
                            [this](const auto& request, auto& response)
                            {
                              restoreState(request, saved_state_, simulator_, response);
+                             followSettings(parameters_.real_time_factor);
+                             reconfiguration_->update();
                              showSetState();
                            });
   services_.add<SetLinkState>(

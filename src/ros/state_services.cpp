@@ -9,7 +9,6 @@
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/services.h"
-#include "frictional_contact_sim/simulation/state_file.h"
 #include "request_fields.h"
 
 namespace frictional_contact_sim
@@ -108,7 +107,7 @@ void storeState(const SaveState::Request& request, const Simulator& simulator, S
                 SaveState::Response& response)
 {
   if (request.file.empty())
-    slot = simulator.state();
+    slot = SavedState{simulator.state(), simulator.settings()};
   else
     saveState(simulator, request.file);
   response.stamp = toStamp(simulator.time());
@@ -119,13 +118,14 @@ void restoreState(const LoadState::Request& request, const StateSlot& slot, Simu
 {
   if (request.file.empty() && !slot)
     throw RequestError("file: found '', and nothing was saved in memory yet");
-  SimulationState state = request.file.empty() ? *slot : readState(simulator, request.file);
-  const ros::Time saved = toStamp(state.time());
+  SavedState saved = request.file.empty() ? *slot : readState(simulator, request.file);
+  SimulationState& state = saved.state;
+  const ros::Time stamp = toStamp(state.time());
   state.step = std::max(state.step, simulator.state().step);
   if (state.time() < simulator.time())
     state.clock.restart(simulator.time());
-  simulator.setState(state);
-  response.stamp = saved;
+  simulator.setState(state, saved.settings);
+  response.stamp = stamp;
 }
 
 void placeLink(const SetLinkState::Request& request, const NameTable& names, FrameResolver& frames,

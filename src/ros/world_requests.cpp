@@ -47,6 +47,9 @@ void SimulatorNode::addWorldServices()
               spawn(spec, simulator_);
               name_rules_.prefixed.insert(spec.name);
             });
+        const int body = simulator_.findBody(spec.name);
+        setServoGains(body);
+        simulator_.setStartCommands(body);
         for (const std::string& warning : simulator_.warnings())
         {
           ROS_WARN_STREAM(warning);

@@ -27,17 +27,20 @@ void setWindow(const ApplyWrench::Request& request, const Simulator& simulator, 
   const double now = simulator.time();
   const double start = request.start.isZero() ? now : request.start.toSec();
   const double duration = request.duration.toSec();
+  if (duration < 0.0)
+    throw RequestError("duration: found " + numberText(duration) +
+                       " s, expected more than zero, or zero for until cleared");
   if (start < now - STAMP_ROUNDING)
     throw RequestError("start: found " + numberText(start) + " s, expected zero or at least the present time " +
                        numberText(now) + " s");
   const double delay = std::max(0.0, start - now);
   wrench.from = simulator.state().scenario_clock.time(dt) + delay;
-  wrench.until = duration < 0.0 ? std::numeric_limits<double>::infinity() : wrench.from + duration;
+  wrench.until = request.duration.isZero() ? std::numeric_limits<double>::infinity() : wrench.from + duration;
   const double first_middle = (std::max(0.0, std::ceil(delay / dt - 0.5)) + 0.5) * dt;
-  if (duration >= 0.0 && !(first_middle < delay + duration))
+  if (!request.duration.isZero() && !(first_middle < delay + duration))
     throw RequestError("duration: found " + numberText(duration) +
-                       " s, expected more, so that the middle of a step is within it, or a negative number for without "
-                       "end; time_step is " +
+                       " s, expected more, so that the middle of a step is within it, or zero for until cleared; "
+                       "time_step is " +
                        numberText(dt) + " s");
 }
 

@@ -231,13 +231,15 @@ void Simulator::Impl::finishImpact()
     state.energy.impact += kinetic - state.energy.kinetic;
 }
 
-const StepOutcome& Simulator::setState(const SimulationState& state)
+const StepOutcome& Simulator::setState(const SimulationState& state, const RunSettings& settings)
 {
   if (!sameShape(state, impl_->state))
     throw StateError("the state's bodies or joints differ in number from the simulator's");
   checkNumbers(*this, state);
   checkDrives(*impl_->world, state);
   checkWelds(*this, state);
+  impl_->checkSettings(settings);
+  takeSettings(settings);
   const double dt = impl_->state.dt;
   impl_->state = state;
   impl_->joinWelded();

@@ -160,22 +160,14 @@ void Simulator::setStart()
   impl_->setStart();
 }
 
+void Simulator::setStartCommands(int body)
+{
+  impl_->start.bodies[body].drives = impl_->state.bodies[body].drives;
+}
+
 void Simulator::resetTime()
 {
   impl_->state.clock = StepClock{};
-}
-
-void Simulator::setTimeStep(double dt)
-{
-  if (!(dt > 0.0) || !std::isfinite(dt))
-    throw std::invalid_argument("time_step is " + std::to_string(dt) +
-                                ", expected a positive finite number of seconds");
-  SimulationState& state = impl_->state;
-  for (StepClock* clock : {&state.clock, &state.scenario_clock})
-    clock->restart(clock->time(state.dt));
-  state.dt = dt;
-  impl_->scenario.time_step = dt;
-  impl_->context = makeContext(impl_->scenario);
 }
 
 const SimulationState& Simulator::state() const
@@ -327,18 +319,6 @@ void Simulator::clearWrenches(int body, int frame)
   wrenches.erase(std::remove_if(wrenches.begin(), wrenches.end(),
                                 [frame](const ExternalWrench& wrench) { return frame < 0 || wrench.frame == frame; }),
                  wrenches.end());
-}
-
-void Simulator::setSolver(const std::string& name)
-{
-  setSolver(createSolver(name));
-}
-
-void Simulator::setSolver(std::unique_ptr<Solver> solver)
-{
-  impl_->scenario.solver = solver->name();
-  impl_->scenario.solver_options.clear();  // those it has are its own affair
-  impl_->solver.setMethod(std::move(solver));
 }
 
 void Simulator::setFailurePolicy(FailurePolicy policy)

@@ -60,11 +60,16 @@ struct Simulator::Impl
   void restartLedger();
   void moveLedgerZero(double potential);  ///< after bookEnergies. @param potential what the ledger had so far [J]
   void setMaterials(const MaterialTable& materials);
+  PairTable pairsOf(const MaterialTable& materials) const;
+  void checkSettings(const RunSettings& settings) const;
+  StoppingOptions changedStopping(const RunSettings& settings) const;
+  MaterialTable changedMaterials(const RunSettings& settings) const;
   void bookEnergies();
   void updateEnds();
 
   std::shared_ptr<const WorldModel> world;
   Scenario scenario;
+  RunSettings changed;  ///< without the friction of pairs, which is scenario.materials.rules
   PairTable pairs;  ///< the world's until materials are set
   CollisionWorld collision;
   SimulationState state;

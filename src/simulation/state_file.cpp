@@ -17,7 +17,7 @@ namespace frictional_contact_sim
 namespace
 {
 const std::string MAGIC = "FCSSTATE";
-constexpr std::uint64_t VERSION = 3;  ///< 2: wide contact ids, 3: welds
+constexpr std::uint64_t VERSION = 4;  ///< 2: wide contact ids, 3: welds, 4: settings
 constexpr size_t HEADER = 8 + 4 + 8 + 8;  ///< bytes
 
 void append(std::string& bytes, std::uint64_t value, int width)
@@ -169,6 +169,8 @@ void saveState(const Simulator& simulator, const std::string& path)
 {
   Writer writer;
   visitNames(writer, simulator);
+  RunSettings settings = simulator.settings();
+  visitSettings(writer, settings);
   SimulationState state = simulator.state();
   visitState(writer, state);
   std::string bytes = MAGIC;
@@ -190,16 +192,17 @@ void saveState(const Simulator& simulator, const std::string& path)
   }
 }
 
-SimulationState readState(const Simulator& simulator, const std::string& path)
+SavedState readState(const Simulator& simulator, const std::string& path)
 {
   try
   {
     Reader reader(readPayload(path));
     visitNames(reader, simulator);
-    SimulationState state = simulator.state();
-    visitState(reader, state);
+    SavedState saved{simulator.state(), {}};
+    visitSettings(reader, saved.settings);
+    visitState(reader, saved.state);
     reader.expectEnd();
-    return state;
+    return saved;
   }
   catch (const std::exception& error)
   {
@@ -209,10 +212,10 @@ SimulationState readState(const Simulator& simulator, const std::string& path)
 
 const StepOutcome& loadState(Simulator& simulator, const std::string& path)
 {
-  const SimulationState state = readState(simulator, path);
+  const SavedState saved = readState(simulator, path);
   try
   {
-    return simulator.setState(state);
+    return simulator.setState(saved.state, saved.settings);
   }
   catch (const std::exception& error)
   {

@@ -146,6 +146,7 @@ void Simulator::Impl::takeOver(const Impl& old, const std::vector<int>& new_body
   state = present;
   start_outcome = old.start_outcome;
   outcome = StepOutcome{};
+  changed = old.changed;
   dump_folder = old.dump_folder;
   dump_name = old.dump_name;
   dumps_left = old.dumps_left;

@@ -69,7 +69,7 @@ class ServicesTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         return answer.twist.linear.x
 
-    def push(self, force, frame="world", duration=-1.0):
+    def push(self, force, frame="world", duration=0.0):
         return service("apply_wrench", ApplyWrench)("", "box", frame, Wrench(Vector3(force, 0, 0), Vector3()), "",
                                                     Point(0, 0, -0.1), rospy.Time(0), rospy.Duration(duration))
 
@@ -152,7 +152,7 @@ class ServicesTest(unittest.TestCase):
              ("", "box", "", Wrench(Vector3(NAN, 0, 0), Vector3()), "", Point(), rospy.Time(), some)),
             ("start", service("apply_wrench", ApplyWrench), ("", "box", "", none, "", Point(), rospy.Time(0.001), some)),
             ("duration", service("apply_wrench", ApplyWrench),
-             ("", "box", "", none, "", Point(), rospy.Time(), rospy.Duration(0))),
+             ("", "box", "", none, "", Point(), rospy.Time(), rospy.Duration(-1))),
             ("body", service("clear_wrenches", ClearWrenches), ("nobody", "")),
             ("nothing was saved", service("load_state", LoadState), ("",)),
             ("cannot be read", service("load_state", LoadState), ("/no/such/file",)),

@@ -20,7 +20,7 @@ ApplyWrench::Request push(double x, double y, double z)
   request.wrench.force.x = x;
   request.wrench.force.y = y;
   request.wrench.force.z = z;
-  request.duration = ros::Duration(-1.0);
+  request.duration = ros::Duration(0.0);
   return request;
 }
 
@@ -217,7 +217,7 @@ TEST_F(WrenchTest, RefusalsNameTheFieldAndChangeNothing)
       {"wrench.force.x: found 1e+300", [](auto& r) { r.wrench.force.x = 1e300; }},
       {"point.x: found nan", [](auto& r) { r.point.x = NOT_A_NUMBER; }},
       {"start: found 0.019", [](auto& r) { r.start = ros::Time(0.019); }},
-      {"duration: found 0 s", [](auto& r) { r.duration = ros::Duration(0.0); }},
+      {"duration: found -1 s", [](auto& r) { r.duration = ros::Duration(-1.0); }},
       {"duration: found 4e-04 s", [](auto& r) { r.duration = ros::Duration(0.0004); }},
   };
   for (const auto& [reason, change] : changes)

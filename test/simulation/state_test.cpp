@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -96,6 +97,69 @@ TEST_F(StateFileTest, SavedAndLoadedGoesOnWithTheSameBits)
       EXPECT_EQ(whole.stateHash(), second.stateHash()) << name;
       EXPECT_EQ(whole.time(), second.time());
     }
+}
+
+TEST_F(StateFileTest, WhatWasSetWhileItRanComesAlong)
+{
+  for (const char* name : SCENARIOS)
+    for (const unsigned seed : {1u, 2u, 3u})
+    {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> share(0.5, 1.0);
+      Simulator whole(shipped(name));
+      run(whole, 37);
+      StoppingOptions stopping = whole.scenario().stopping;
+      stopping.tolerance *= share(random);
+      whole.setTimeStep(whole.scenario().time_step * share(random));
+      whole.setGravity(whole.scenario().gravity * share(random));
+      whole.setDefaultFriction(share(random));
+      whole.setFriction(whole.bodyName(0), "ground", share(random));
+      whole.setSolver("ac_newton");
+      whole.setStopping(stopping);
+      run(whole, 100);
+      saveState(whole, path_);
+      run(whole, 100);
+
+      Simulator second(shipped(name));
+      loadState(second, path_);
+      run(second, 100);
+      EXPECT_EQ(firstDifference(whole.state(), second.state()), "") << name;
+      EXPECT_EQ(second.scenario().solver, "ac_newton");
+      EXPECT_EQ(second.scenario().stopping.tolerance, stopping.tolerance);
+      EXPECT_EQ(second.scenario().gravity, whole.scenario().gravity);
+
+      // What the saved run had from its scenario stays as it is in this one.
+      Simulator plain(shipped(name));
+      saveState(plain, path_);
+      const Eigen::Vector3d gravity = second.scenario().gravity;
+      loadState(second, path_);
+      EXPECT_EQ(second.scenario().gravity, gravity);
+    }
+}
+
+TEST_F(StateFileTest, SettingsThatCannotBeTakenChangeNothing)
+{
+  Simulator simulator(shipped("grasp"));
+  run(simulator, 20);
+  const SimulationState state = simulator.state();
+  const std::uint64_t before = simulator.stateHash();
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::vector<RunSettings> all(6);
+  all[0].time_step = -1.0;
+  all[1].gravity = Eigen::Vector3d(0.0, infinite, 0.0);
+  all[2].solver = "newton";
+  all[3].tolerance = 0.0;
+  all[4].default_friction = -1.0;
+  all[5].friction = {{{"", simulator.bodyName(0), ""}, {"ground", "", ""}, -0.1, std::nullopt}};
+  for (RunSettings& settings : all)
+  {
+    if (!settings.time_step)
+      settings.time_step = 0.5 * simulator.scenario().time_step;
+    EXPECT_THROW(simulator.setState(state, settings), std::invalid_argument);
+    EXPECT_EQ(simulator.stateHash(), before);
+    EXPECT_EQ(simulator.scenario().time_step, state.dt);
+    EXPECT_FALSE(simulator.settings().time_step);
+  }
 }
 
 TEST_F(StateFileTest, AnyCutOrChangedFileIsOneClearLineAndChangesNothing)

@@ -64,4 +64,16 @@ JointCommand velocityCommand(double target, const std::string& joint, const std:
 /** @brief An effort: the servo's limit does not concern it, only the URDF's does. */
 JointCommand effortCommand(double target);
 
+/** @brief What clampTarget said of one number of a target. */
+struct ClampedTarget
+{
+  JointCommand::Mode quantity;
+  std::string line;
+};
+
+/** @brief Takes all numbers of a target into what its joint can do and gives the command to the simulator.
+ *  @return what was changed */
+std::vector<ClampedTarget> giveTarget(JointTarget target, JointCommand::Mode mode, const NameTable& names,
+                                      const std::map<std::string, ServoGains>& gains, Simulator& simulator);
+
 }  // namespace frictional_contact_sim

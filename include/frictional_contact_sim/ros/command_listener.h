@@ -46,8 +46,6 @@ private:
                const std::function<std::vector<JointTarget>()>& read);
   void keep(const ros::Time& stamp, const Command& command);
   void give(const Command& command);
-  void give(const Command& command, const JointTarget& target);
-  void clamp(const std::string& topic, const JointHandle& handle, JointCommand::Mode mode, double& target);
   void warn(const std::string& line);
 
   Simulator& simulator_;

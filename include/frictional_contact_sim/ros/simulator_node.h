@@ -54,7 +54,7 @@ private:
 
   void advertiseServices();
   void advertiseRequests();
-  void setServoGains();
+  void setServoGains(int of_body);
   RunState runState() const;
   void addWorldServices();
   void changeBodies(const std::function<void()>& change);

@@ -12,19 +12,20 @@
 #include <optional>
 
 #include "frictional_contact_sim/ros/frames.h"
-#include "frictional_contact_sim/simulation/state.h"
+#include "frictional_contact_sim/simulation/state_file.h"
 
 namespace frictional_contact_sim
 {
 /** @brief The slot in memory of ~save_state and ~load_state. */
-using StateSlot = std::optional<SimulationState>;
+using StateSlot = std::optional<SavedState>;
 
 void storeState(const SaveState::Request& request, const Simulator& simulator, StateSlot& slot,
                 SaveState::Response& response);
 
 /**
  * @brief Goes on from a saved state, to the bit. Time and step count become those of the saved state where they are
- * later, and else go on as they are: they never run back. Settings (solver, friction, gravity, time step) stay.
+ * later, and else go on as they are: they never run back. What was set in the saved run (solver, friction, gravity,
+ * time step) is set again; what it had from its scenario stays as it is here.
  */
 void restoreState(const LoadState::Request& request, const StateSlot& slot, Simulator& simulator,
                   LoadState::Response& response);

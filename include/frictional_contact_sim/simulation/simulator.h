@@ -16,6 +16,7 @@
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
+#include "frictional_contact_sim/simulation/run_settings.h"
 #include "frictional_contact_sim/simulation/scenario.h"
 #include "frictional_contact_sim/simulation/state.h"
 #include "frictional_contact_sim/simulation/step_report.h"
@@ -53,6 +54,8 @@ public:
   const StepOutcome& reset();
   /** @brief From now on a reset goes back to the present state (with commands given before the first step, say). */
   void setStart();
+  /** @brief From now on a reset gives this body the commands that it has now. */
+  void setStartCommands(int body);
   /** @brief Time back to zero; the scenario's clock, which wrench windows see, is not touched. */
   void resetTime();
   /** @brief From now on. @throws std::invalid_argument unless finite and > 0 */
@@ -65,7 +68,7 @@ public:
   void setStopping(const StoppingOptions& stopping);
   /**
    * @brief Friction of all pairs of two groups of surfaces, from the next step on; the last word on a pair is what
-   * counts. Like all settings no part of the state: a reset keeps it.
+   * counts. Like all settings no part of the state: a reset keeps it. A state file has it beside the state.
    * @param a, b a material, a body, body/link, or "ground"
    * @param friction [-] >= 0
    * @param restitution [-] in [0, 1], none: as it is
@@ -77,9 +80,14 @@ public:
   void setDefaultFriction(double friction);
 
   const SimulationState& state() const;
-  /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays.
-   *  @throws StateError when its sizes are not this world's or a number is not finite; nothing has changed then */
-  const StepOutcome& setState(const SimulationState& state);
+  /** @brief Goes on from a state of this world, to the bit. Where its dt is another one, this simulator's stays, or
+   * that of the settings.
+   *  @param settings taken over before; what is not set there stays as it is here
+   *  @throws StateError when its sizes are not this world's or a number is not finite, and std::invalid_argument as the
+   *  settings; nothing has changed then */
+  const StepOutcome& setState(const SimulationState& state, const RunSettings& settings = {});
+  /** @brief What was set since the simulator was made, by setTimeStep to setDefaultFriction and setSolver. */
+  RunSettings settings() const;
   /** @brief Of the last step, reset, load or set; at the start that of its impact solve. */
   const StepOutcome& outcome() const;
 
@@ -200,6 +208,8 @@ public:
   std::uint64_t stateHash() const;
 
 private:
+  void takeSettings(const RunSettings& settings);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
