@@ -11,6 +11,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 import rosbag
+import rospkg
 
 FORCE_TOLERANCE = 1e-4  # relative, worst sample
 RESIDUAL_TOLERANCE = 1e-8
@@ -54,8 +55,12 @@ def count_problems(messages, steps):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
+    if "--version" in sys.argv:
+        print("check_demo_bag.py", rospkg.RosPack().get_manifest("frictional_contact_sim").version)
+        return 0
     parser.add_argument("bag")
     parser.add_argument("urdf")
+    parser.add_argument("--version", action="store_true", help="print it and leave")
     parser.add_argument("--steps", type=int, default=0, help="number of steps that the run had")
     parser.add_argument("--last", type=float, default=0.5, help="window at the end for the force balance [s]")
     arguments = parser.parse_args()
