@@ -3,7 +3,7 @@
 
     check_demo_bag.py BAG URDF [--steps N] [--last SECONDS]
 
-Exit code 0 only when the bag holds every step of every topic once, with one stamp each, the contact forces of the last
+Exit code 2 where a file cannot be read, 0 only when the bag holds every step of every topic once, with one stamp each, the contact forces of the last
 half second balance the weight, the robot is at rest, and every step was solved.
 """
 import argparse
@@ -65,14 +65,18 @@ def main():
     parser.add_argument("--last", type=float, default=0.5, help="window at the end for the force balance [s]")
     arguments = parser.parse_args()
 
-    messages = read(arguments.bag)
+    try:
+        messages, mass = read(arguments.bag), mass_of(arguments.urdf)
+    except (OSError, ValueError, rosbag.ROSBagException, ElementTree.ParseError) as error:
+        print(f"check_demo_bag: {arguments.bag}, {arguments.urdf}: {error}; expected a bag of simulate.launch and the robot's URDF file", file=sys.stderr)
+        return 2
     reports = messages.get("/simulator_node/step_report", [])
     if not reports:
         print(f"check_demo_bag: {arguments.bag} holds no step_report")
         return 1
     problems = count_problems(messages, arguments.steps)
 
-    weight = mass_of(arguments.urdf) * GRAVITY
+    weight = mass * GRAVITY
     end = reports[-1].header.stamp.to_sec()
     sums = [sum(contact.force.x * contact.normal.x + contact.force.y * contact.normal.y +
                 contact.force.z * contact.normal.z for contact in message.contacts if not contact.body_b)

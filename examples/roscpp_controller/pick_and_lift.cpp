@@ -1,7 +1,7 @@
 // pick_and_lift: a roscpp controller. The arm of the scenario pick_and_place grasps the part, lifts it and holds it.
 //
-// Joint positions and velocities go out a hundred times a simulated second; the fingers close with an effort. The arm's angles
-// follow from where the wrist shall be: the hand points down, upper arm and forearm are of one length.
+// Joint positions and velocities go out a hundred times a simulated second; the fingers close with an effort. The arm's
+// angles follow from where the wrist shall be: the hand points down, upper arm and forearm are of one length.
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 

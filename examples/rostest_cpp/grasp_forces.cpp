@@ -1,4 +1,5 @@
-// A rostest in C++: two fingers hold a cube of 1 kg with 12 N each, and the forces of every contact are those of statics.
+// A rostest in C++: two fingers hold a cube of 1 kg with 12 N each, and the forces of every contact are those of
+// statics.
 #include <frictional_contact_sim/ContactArray.h>
 #include <frictional_contact_sim/StepReport.h>
 #include <gtest/gtest.h>
@@ -28,8 +29,8 @@ TEST(GraspForcesTest, EachPadPressesWithItsEffortAndCarriesHalfOfTheWeight)
     // The force acts on link a, the normal points from b to a.
     const bool cube_is_a = contact.link_a == "cube";
     const std::string finger = cube_is_a ? contact.link_b : contact.link_a;
-    normal[finger] += contact.force.x * contact.normal.x + contact.force.y * contact.normal.y +
-                      contact.force.z * contact.normal.z;
+    normal[finger] +=
+        contact.force.x * contact.normal.x + contact.force.y * contact.normal.y + contact.force.z * contact.normal.z;
     lift[finger] += cube_is_a ? contact.force.z : -contact.force.z;
     EXPECT_EQ(contact.mode, Contact::STICKING);
     EXPECT_GE(contact.cone_margin, 0.0);  // mu r_N - |r_T|
