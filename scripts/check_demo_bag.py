@@ -3,8 +3,8 @@
 
     check_demo_bag.py BAG URDF [--steps N] [--last SECONDS]
 
-Exit code 2 where a file cannot be read, 0 only when the bag holds every step of every topic once, with one stamp each, the contact forces of the last
-half second balance the weight, the robot is at rest, and every step was solved.
+Exit code 0 only when the bag holds every step of every topic once, with one stamp each, the contact forces of the last
+half second balance the weight, the robot is at rest, and every step was solved; 2 where a file cannot be read.
 """
 import argparse
 import sys
@@ -68,7 +68,8 @@ def main():
     try:
         messages, mass = read(arguments.bag), mass_of(arguments.urdf)
     except (OSError, ValueError, rosbag.ROSBagException, ElementTree.ParseError) as error:
-        print(f"check_demo_bag: {arguments.bag}, {arguments.urdf}: {error}; expected a bag of simulate.launch and the robot's URDF file", file=sys.stderr)
+        print(f"check_demo_bag: {arguments.bag}, {arguments.urdf}: {error}; expected a bag of simulate.launch and a URDF file",
+              file=sys.stderr)
         return 2
     reports = messages.get("/simulator_node/step_report", [])
     if not reports:

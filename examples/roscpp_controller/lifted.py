@@ -32,5 +32,5 @@ class LiftedTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("lifted")
-    rostest.rosrun("frictional_contact_sim", "pick_and_lift", LiftedTest)
+    rospy.init_node("lifting")
+    rostest.rosrun("frictional_contact_sim", "lifting", LiftedTest)
