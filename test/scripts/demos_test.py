@@ -3,9 +3,10 @@
 numbers drawn anew. Independent of the simulator are statics of the ladder, weights, and where things stood at the start."""
 import itertools
 import math
+import os
 import pathlib
 import random
-import re
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -112,6 +113,18 @@ class DemosTest(unittest.TestCase):
                     tangential = math.sqrt(max(0.0, square - normal ** 2))
                     self.assertGreaterEqual(normal, -1e-6)
                     self.assertLessEqual(tangential, float(row['friction']) * normal + 1e-5 * (1.0 + normal))
+
+    def test_launch_files_run_into_a_bag(self):
+        with socket.socket() as probe:
+            probe.bind(('localhost', 0))
+            environment = dict(os.environ, ROS_MASTER_URI=f'http://localhost:{probe.getsockname()[1]}')
+        for name in (self.dice.choice([path.stem for path in launch_files() if scenario_of(path)]), 'real_robot'):
+            with self.subTest(name):
+                bag = pathlib.Path(self.folder) / f'{name}.bag'
+                command = ['roslaunch', 'frictional_contact_sim', f'{name}.launch', 'real_time_factor:=0', 'num_steps:=30', f'bag:={bag}']
+                done = subprocess.run(command, env=environment, timeout=120, capture_output=True, text=True)
+                self.assertRegex(done.stdout, r'end: 30 steps, .* failed steps 0', done.stdout + done.stderr)
+                self.assertTrue(bag.exists())
 
     def test_the_files_are_those_of_the_generator(self):
         subprocess.run([ROOT / 'scripts/generate_demos', '--output', self.folder], check=True)

@@ -1,9 +1,12 @@
 // What all programs have in common, from outside: --version, folders given as files, what a terminal shows.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "command.h"
 
