@@ -4,13 +4,14 @@
     check_demo_bag.py BAG URDF [--steps N] [--last SECONDS]
 
 Exit code 0 only when the bag holds every step of every topic once, with one stamp each, the contact forces of the last
-half second balance the weight, the robot is at rest, and every step was solved.
+half second balance the weight, the robot is at rest, and every step was solved; 2 where a file cannot be read.
 """
 import argparse
 import sys
 import xml.etree.ElementTree as ElementTree
 
 import rosbag
+import rospkg
 
 FORCE_TOLERANCE = 1e-4  # relative, worst sample
 RESIDUAL_TOLERANCE = 1e-8
@@ -54,20 +55,29 @@ def count_problems(messages, steps):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
+    if "--version" in sys.argv:
+        print("check_demo_bag.py", rospkg.RosPack().get_manifest("frictional_contact_sim").version)
+        return 0
     parser.add_argument("bag")
     parser.add_argument("urdf")
+    parser.add_argument("--version", action="store_true", help="print it and leave")
     parser.add_argument("--steps", type=int, default=0, help="number of steps that the run had")
     parser.add_argument("--last", type=float, default=0.5, help="window at the end for the force balance [s]")
     arguments = parser.parse_args()
 
-    messages = read(arguments.bag)
+    try:
+        messages, mass = read(arguments.bag), mass_of(arguments.urdf)
+    except (OSError, ValueError, rosbag.ROSBagException, ElementTree.ParseError) as error:
+        print(f"check_demo_bag: {arguments.bag}, {arguments.urdf}: {error}; expected a bag of simulate.launch and a URDF file",
+              file=sys.stderr)
+        return 2
     reports = messages.get("/simulator_node/step_report", [])
     if not reports:
         print(f"check_demo_bag: {arguments.bag} holds no step_report")
         return 1
     problems = count_problems(messages, arguments.steps)
 
-    weight = mass_of(arguments.urdf) * GRAVITY
+    weight = mass * GRAVITY
     end = reports[-1].header.stamp.to_sec()
     sums = [sum(contact.force.x * contact.normal.x + contact.force.y * contact.normal.y +
                 contact.force.z * contact.normal.z for contact in message.contacts if not contact.body_b)

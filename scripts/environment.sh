@@ -56,6 +56,42 @@ build_package()
   return $code
 }
 
+# build_package with what it says in a file; on a terminal a line on the error output says how far it is:
+# build_quietly LOG [as build_package ...]
+build_quietly()
+{
+  local log=$1 bar= code=0
+  shift
+  : >"$log"
+  if [ -t 2 ]; then
+    show_build "$log" &
+    bar=$!
+  fi
+  build_package "$@" >"$log" 2>&1 || code=$?
+  if [ -n "$bar" ]; then
+    kill "$bar" && wait "$bar" 2>/dev/null || true
+    printf '\r\033[K' >&2
+  fi
+  return $code
+}
+
+# The last percentage of make in a log, and the time left were the rest as fast; ends with the script.
+show_build()
+{
+  local start=$SECONDS percent elapsed
+  sleep 2
+  while kill -0 $$ 2>/dev/null; do
+    percent=$(grep -oE '^\[ *[0-9]+%\]' "$1" | tail -n 1 | tr -dc 0-9 || true)
+    elapsed=$((SECONDS - start))
+    if [ "${percent:-0}" -gt 0 ]; then
+      printf '\r\033[Kbuilding: %s %%, about %s s left' "$percent" $((elapsed * (100 - percent) / percent)) >&2
+    else
+      printf '\r\033[Kbuilding: %s s' "$elapsed" >&2
+    fi
+    sleep 1
+  done
+}
+
 # The package's own ROS environment; the caller's ROS_PACKAGE_PATH and ROS_MASTER_URI are kept.
 use_devel_space()
 {

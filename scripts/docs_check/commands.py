@@ -12,8 +12,8 @@ FOREIGN = {'apt-get', 'cat', 'catkin_make', 'cd', 'chmod', 'cmake', 'cp', 'done'
 SEPARATORS = {'&&', '||', '|', ';', '&', '(', ')'}
 BEFORE = {'do', 'exec', 'sudo', 'time'}  # words a command may stand behind
 # Options whose value is a file or folder that the command writes; words of ROS arguments likewise.
-WRITES = {'--output', '--save-state', '--history', '--dump', '-O', '>', '>>', 'bag:=', '_bag:=', '_dump_dir:='}
-WRITES_POSITIONAL = {'record_bag': 0, 'generate_problem': -1, 'robustness': 0, 'scripts/demo': 0, 'mkdir': -1,
+WRITES = {'--output', '--save-state', '--history', '--dump', '-O', '>', '>>', '-B', 'bag:=', '_bag:=', '_dump_dir:='}
+WRITES_POSITIONAL = {'record_bag': 0, 'generate_problem': -1, 'robustness': 0, 'scripts/demo': 0, 'mkdir': -1, 'examples/bag_and_plots/record_and_plot': 0,
                      'scripts/compare_builds': 1}
 EXTENSION = re.compile(r'\.(yaml|urdf|hdf5|csv|bag|launch|py|test|txt|bash|cpp|sh|md|state)$')
 ROS_NAMES = {'rostopic', 'rosservice', 'rosbag', 'record_bag', 'rosparam'}

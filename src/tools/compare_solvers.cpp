@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <vector>
 
 #include "frictional_contact_sim/math/contact_functions.h"
@@ -166,7 +167,7 @@ public:
   int run(const std::vector<std::string>& files)
   {
     tools::ProgressBar progress(static_cast<long>(files.size() * solvers_.size()));
-    output_ << HEADER << std::endl;
+    write(progress, HEADER);
     long done = 0;
     for (const std::string& file : files)
     {
@@ -180,17 +181,19 @@ public:
         {
           if (tools::stop_requested)
             throw std::runtime_error("interrupted");
-          solveOne(file, problem, q, *solver);
+          write(progress, solveOne(file, problem, q, *solver));
           progress.update(++current);
         }
       }
       catch (const std::exception& error)
       {
-        progress.clear();
-        std::cerr << "compare_solvers: " << error.what() << '\n';
+        {
+          const auto lock = progress.pause();
+          std::cerr << "compare_solvers: " << error.what() << '\n';
+        }
         if (tools::stop_requested)
           return tools::INTERRUPTED;
-        output_ << field(file) << ",,,,,BAD_INPUT,,,,,,,,," << field(error.what()) << std::endl;
+        write(progress, field(file) + ",,,,,BAD_INPUT,,,,,,,,," + field(error.what()));
         exit_code_ = tools::BAD_INPUT;
       }
       progress.update(done);
@@ -199,13 +202,21 @@ public:
   }
 
 private:
-  void solveOne(const std::string& file, const FclibProblem& problem, const Eigen::VectorXd& q, Solver& solver)
+  void write(tools::ProgressBar& progress, const std::string& line)
+  {
+    const auto lock = progress.pause();  // output and bar may share a terminal
+    output_ << line << std::endl;
+  }
+
+  /** @return a row */
+  std::string solveOne(const std::string& file, const FclibProblem& problem, const Eigen::VectorXd& q, Solver& solver)
   {
     const bool local = problem.kind == FclibKind::LOCAL;
     SolverResult result;
     std::vector<double> cpu, wall;
-    output_ << field(file) << ',' << (local ? "local" : "global") << ',' << problem.dimension << ',' << problem.contacts
-            << ',' << solver.name() << ',';
+    std::ostringstream row;
+    row << field(file) << ',' << (local ? "local" : "global") << ',' << problem.dimension << ',' << problem.contacts
+        << ',' << solver.name() << ',';
     try
     {
       for (int k = 0; k < arguments_.repeat; ++k)
@@ -222,20 +233,21 @@ private:
     catch (const std::exception& error)
     {
       // The file was good: it is this method that cannot take the problem (or not this size).
-      output_ << "REFUSED,,,,,,,,," << field(error.what()) << std::endl;
       exit_code_ = std::max(exit_code_, tools::NOT_CONVERGED);
-      return;
+      row << "REFUSED,,,,,,,,," << field(error.what());
+      return row.str();
     }
     const std::vector<Law>& laws = local ? problem.local.laws : problem.global.laws;
     const Diagnostics diagnostics = diagnose(laws, q, result.solution.u, result.solution.r);
-    output_ << toString(result.status) << ',' << result.iterations << ',' << number(result.residual) << ','
-            << number(diagnostics.siconos_error) << ',' << number(diagnostics.natural_map_1q) << ','
-            << number(thesisCriterion(laws, result.solution)) << ',' << number(median(cpu)) << ','
-            << number(median(wall)) << ',' << field(joined(result.tried)) << ',' << field(result.message) << std::endl;
+    row << toString(result.status) << ',' << result.iterations << ',' << number(result.residual) << ','
+        << number(diagnostics.siconos_error) << ',' << number(diagnostics.natural_map_1q) << ','
+        << number(thesisCriterion(laws, result.solution)) << ',' << number(median(cpu)) << ',' << number(median(wall))
+        << ',' << field(joined(result.tried)) << ',' << field(result.message);
     if (result.status != SolverStatus::CONVERGED)
       exit_code_ = std::max(exit_code_, tools::NOT_CONVERGED);
     if (!arguments_.history.empty())
       writeHistory(file, solver.name(), result.history);
+    return row.str();
   }
 
   void writeHistory(const std::string& file, const std::string& solver, const std::vector<HistoryEntry>& history)
@@ -273,9 +285,7 @@ int run(Arguments& arguments)
     for (const std::string& input : files)
       if (fs::exists(arguments.output) && fs::exists(input) && fs::equivalent(arguments.output, input))
         throw std::invalid_argument("--output " + arguments.output + " is an input itself, expected another file");
-    file.open(arguments.output);
-    if (!file)
-      throw std::runtime_error("cannot write " + arguments.output);
+    file = tools::openOutput(arguments.output);
   }
   if (!arguments.history.empty())
     prepareHistory(arguments.history, files);

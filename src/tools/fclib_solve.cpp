@@ -4,12 +4,9 @@
  * Exit 0 converged, 1 not converged, 2 bad input.
  */
 #include <algorithm>
-#include <condition_variable>
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
@@ -39,48 +36,10 @@ struct Arguments
   bool list = false;
 };
 
-/** A progress bar with the seconds gone by, drawn by a thread of its own: a method does not tell how far it is. */
-class WaitingLine
-{
-public:
-  explicit WaitingLine(int total) : bar_(total), thread_(&WaitingLine::show, this) {}
-  ~WaitingLine()
-  {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      finished_ = true;
-    }
-    changed_.notify_one();
-    thread_.join();
-  }
-  WaitingLine(const WaitingLine&) = delete;
-  WaitingLine& operator=(const WaitingLine&) = delete;
-  void update(int done)
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    done_ = done;
-  }
-
-private:
-  void show()
-  {
-    std::unique_lock<std::mutex> lock(mutex_);
-    for (int seconds = 1; !changed_.wait_for(lock, std::chrono::seconds(1), [this] { return finished_; }); ++seconds)
-      bar_.update(done_, std::to_string(seconds) + " s");
-  }
-
-  tools::ProgressBar bar_;
-  int done_ = 0;
-  bool finished_ = false;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::thread thread_;
-};
-
 /** Cold solves in one process; result is the last one with the median time. */
 void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, SolverResult& result)
 {
-  WaitingLine waiting(repeat);
+  tools::ProgressBar progress(repeat > 1 ? repeat : 0, repeat > 1 ? "" : "solving");
   std::vector<double> seconds;
   for (int k = 0; k < repeat && (k == 0 || !tools::stop_requested); ++k)
   {
@@ -89,7 +48,7 @@ void solveRepeatedly(Solver& solver, const FclibProblem& problem, int repeat, So
     else
       solver.solve(problem.global, nullptr, result);
     seconds.push_back(result.seconds);
-    waiting.update(k + 1);
+    progress.update(k + 1);
   }
   std::sort(seconds.begin(), seconds.end());
   const size_t middle = seconds.size() / 2;
@@ -199,6 +158,7 @@ int run(const Arguments& arguments)
   stopping.stop = &tools::stop_requested;
   tools::stopOnSignals();
   solver->setStopping(stopping);
+  tools::expectNoFolder(arguments.file, "an FCLib file (compare_solvers takes folders)");
   const FclibProblem problem = readFclib(arguments.file);
   warnOfAsymmetry(arguments.file, problem);
   std::ofstream history;

@@ -63,9 +63,9 @@ std::string describe(const RodFamilyOptions& options)
   return text.str();
 }
 
-/** Writes one problem with its verdict and says so in one line. */
-void write(const std::string& path, const IncrementalProblem& problem, const std::string& family,
-           const std::string& parameters)
+/** Writes one problem with its verdict. @return one line that says so */
+std::string write(const std::string& path, const IncrementalProblem& problem, const std::string& family,
+                  const std::string& parameters)
 {
   const ExistenceReport existence = checkExistence(problem);
   char margin[32];
@@ -73,24 +73,35 @@ void write(const std::string& path, const IncrementalProblem& problem, const std
   const std::string verdict =
       std::string("existence ") + toString(existence.verdict) + " (margin " + margin + ", " + existence.message + ")";
   writeFclib(path, problem, {family, "family " + family + ": " + parameters + "; " + verdict, ""});
-  std::printf("%s: %zu contacts, %d velocities, %s\n", path.c_str(), problem.laws.size(), problem.velocities(),
-              verdict.c_str());
+  return path + ": " + std::to_string(problem.laws.size()) + " contacts, " + std::to_string(problem.velocities()) +
+         " velocities, " + verdict;
+}
+
+/** One problem, then its line. */
+void writeOne(const std::function<std::string()>& write_it)
+{
+  std::string line;
+  {
+    const tools::ProgressBar progress(0, "generating");
+    line = write_it();
+  }
+  std::cout << line << '\n';
 }
 
 /** Writes a table of named problems into a folder. */
 template <typename Entry, typename Generate>
 void writeTable(const std::string& folder, const std::vector<Entry>& table, const Generate& generate)
 {
-  std::filesystem::create_directories(folder);
+  tools::makeFolder(folder);
   tools::ProgressBar progress(static_cast<long>(table.size()));
   long done = 0;
   for (const Entry& entry : table)
   {
-    progress.clear();
-    write((std::filesystem::path(folder) / (entry.name + ".hdf5")).string(), generate(entry.options), entry.name,
-          describe(entry.options));
-    std::fflush(stdout);
+    const std::string line = write((std::filesystem::path(folder) / (entry.name + ".hdf5")).string(),
+                                   generate(entry.options), entry.name, describe(entry.options));
     progress.update(++done);
+    const auto lock = progress.pause();
+    std::cout << line << std::endl;
   }
 }
 
@@ -157,8 +168,12 @@ void writeGranular(const Arguments& arguments)
   const RigidFamilyOptions options = rigidOptions(arguments);
   const std::string shape =
       "contacts " + std::to_string(arguments.contacts) + ", width " + std::to_string(arguments.width) + ", ";
-  write(arguments.output, granularProblem(arguments.contacts, arguments.width, options), "granular",
-        shape + describe(options));
+  writeOne(
+      [&]
+      {
+        return write(arguments.output, granularProblem(arguments.contacts, arguments.width, options), "granular",
+                     shape + describe(options));
+      });
 }
 
 void writeBoxes(const Arguments& arguments)
@@ -166,8 +181,12 @@ void writeBoxes(const Arguments& arguments)
   const RigidFamilyOptions options = rigidOptions(arguments);
   const std::string shape = "levels " + std::to_string(arguments.levels) + ", points_per_side " +
                             std::to_string(arguments.points_per_side) + ", ";
-  write(arguments.output, boxStackProblem(arguments.levels, arguments.points_per_side, options), "boxes",
-        shape + describe(options));
+  writeOne(
+      [&]
+      {
+        return write(arguments.output, boxStackProblem(arguments.levels, arguments.points_per_side, options), "boxes",
+                     shape + describe(options));
+      });
 }
 }  // namespace
 
@@ -187,22 +206,34 @@ int main(int argc, char** argv)
     command->callback([&action, run] { action = run; });
     return command;
   };
-  addRandomOptions(
-      *add(
-          "alea", "one random problem alea-m-n of the thesis", "OUT",
-          [&] { write(arguments.output, randomFamilyProblem(arguments.random), "alea", describe(arguments.random)); }),
-      arguments.random);
+  addRandomOptions(*add(
+                       "alea", "one random problem alea-m-n of the thesis", "OUT",
+                       [&]
+                       {
+                         writeOne(
+                             [&] {
+                               return write(arguments.output, randomFamilyProblem(arguments.random), "alea",
+                                            describe(arguments.random));
+                             });
+                       }),
+                   arguments.random);
   add(
       "alea-small", "the 15 problems of table 5.1 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, smallRandomFamily(), randomFamilyProblem); });
   add(
       "alea-large", "the 15 problems of table 5.2 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, largeRandomFamily(), randomFamilyProblem); });
-  addRodOptions(
-      *add(
-          "rods", "super-helices hanging from a moving support, hair-m-n of the thesis", "OUT",
-          [&] { write(arguments.output, rodFamilyProblem(arguments.rods), "hair", describe(arguments.rods)); }),
-      arguments.rods);
+  addRodOptions(*add(
+                    "rods", "super-helices hanging from a moving support, hair-m-n of the thesis", "OUT",
+                    [&]
+                    {
+                      writeOne(
+                          [&] {
+                            return write(arguments.output, rodFamilyProblem(arguments.rods), "hair",
+                                         describe(arguments.rods));
+                          });
+                    }),
+                arguments.rods);
   add(
       "rods-small", "15 problems of the sizes of table 5.3 with fixed seeds", "DIR",
       [&] { writeTable(arguments.output, smallRodFamily(), rodFamilyProblem); });

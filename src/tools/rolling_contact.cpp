@@ -2,9 +2,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include "frictional_contact_sim/rolling/closed_forms.h"
 #include "frictional_contact_sim/rolling/core_comparison.h"
@@ -72,8 +74,10 @@ void compare(const fcs::RollingRun& run, const Options& options)
                           Eigen::VectorXd::Constant(n, run.shift));
   for (const std::string& solver : options.compare)
   {
+    auto progress = std::make_unique<fcs::tools::ProgressBar>(0, "core's " + solver);
     const fcs::CoreComparison one =
         fcs::compareWithCore(core, run.contact, solver, TOLERANCE, solverOptions(solver, options));
+    progress.reset();
     std::cout << "  core's " << one.solver << ": " << one.status << "   tractions differ by " << one.difference
               << "   iterations " << one.iterations << "   CPU " << one.seconds << " s\n";
   }
@@ -82,7 +86,7 @@ void compare(const fcs::RollingRun& run, const Options& options)
 /** Makes the folder, before the computation: @throws std::invalid_argument when no file can be made in it. */
 void checkWritable(const std::string& folder)
 {
-  std::filesystem::create_directories(folder);
+  fcs::tools::makeFolder(folder);
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw std::invalid_argument(folder + ": cannot be written, expected a folder for the results");
 }
@@ -102,15 +106,10 @@ int run(const Options& options)
     checkWritable(options.output);
   std::vector<fcs::RollingRun> runs;
   {
-    fcs::tools::ProgressBar progress(100);
-    long percent = 0;
+    fcs::tools::ProgressBar progress(1000);
     fcs::RunHooks hooks;
-    hooks.progress = [&](double share) { progress.update(percent = static_cast<long>(100.0 * share)); };
-    hooks.interrupted = [&]()
-    {
-      progress.update(percent);  // a long first problem has a bar as well
-      return interrupted != 0;
-    };
+    hooks.progress = [&](double share) { progress.update(std::lround(1000.0 * share)); };
+    hooks.interrupted = [] { return interrupted != 0; };
     runs = fcs::runRollingCase(study, hooks);
   }
   bool converged = interrupted == 0;

@@ -1,4 +1,4 @@
-// run_scenario FILE.yaml: runs a scenario in process, as fast as it can, and prints one JSON object.
+// run_scenario FILE.yaml: runs a scenario in process, as fast as it can, and says how it went.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -6,23 +6,22 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/simulation/csv_recorder.h"
-#include "frictional_contact_sim/simulation/root_motion.h"
 #include "frictional_contact_sim/simulation/scenario_files.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/simulation/state_file.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "run_report.h"
 #include "tool_support.h"
 
 namespace fcs = frictional_contact_sim;
+using fcs::tools::RunSummary;
 using fcs::tools::stop_requested;
-using nlohmann::json;
 
 namespace
 {
@@ -36,6 +35,7 @@ struct Options
   bool list_solvers = false;
   std::string output;
   bool json_output = false;
+  bool summary = false;
   int repeat = 1;
   std::string dump;
   int dump_every = 1;
@@ -46,26 +46,7 @@ struct Options
   std::string save_state;
 };
 
-/** What is worst over all steps of a run. */
-struct RunSummary
-{
-  long steps = 0;
-  long failed_steps = 0;
-  double seconds = 0.0;
-  double worst_residual = 0.0;
-  double max_penetration = 0.0;
-  double max_bilateral_violation = 0.0;
-  double loading_seconds = 0.0;
-  std::uint64_t hash = 0;
-  bool ended = false;  ///< by a failed step, under the policies stop and pause
-};
-
 const std::string START = "impact at the start";
-
-std::vector<double> list(const Eigen::VectorXd& vector)
-{
-  return {vector.data(), vector.data() + vector.size()};
-}
 
 /** NAME_CONTACTS_STEP.hdf5 of the step just done, whatever became of its solve; steps without rows have no problem.
  *  @return its path, or empty */
@@ -91,7 +72,8 @@ std::string dumpProblem(const fcs::Simulator& simulator, const Options& options)
 }
 
 /** @return false when the run ends with the outcome: it failed, and the policy is not to go on. */
-bool judge(const fcs::Simulator& simulator, const Options& options, const std::string& what, RunSummary& summary)
+bool judge(const fcs::Simulator& simulator, const Options& options, const std::string& what, RunSummary& summary,
+           fcs::tools::ProgressBar& progress)
 {
   const fcs::StepOutcome& outcome = simulator.outcome();
   if (outcome.converged() || outcome.status == fcs::SolverStatus::STOPPED_BY_USER)
@@ -101,6 +83,7 @@ bool judge(const fcs::Simulator& simulator, const Options& options, const std::s
   const fcs::FailurePolicy policy = simulator.failurePolicy();
   summary.ended = policy == fcs::FailurePolicy::STOP || policy == fcs::FailurePolicy::PAUSE;
   const std::string file = summary.ended && !options.dump.empty() ? dumpProblem(simulator, options) : "";
+  const auto lock = progress.pause();
   if (summary.ended || what == START)
     std::cerr << "run_scenario: " << what << " at " << simulator.time() << " s: " << toString(outcome.status)
               << ", residual " << outcome.residual << ", " << outcome.message
@@ -120,24 +103,24 @@ long countSteps(const fcs::Scenario& scenario)
   return static_cast<long>(count);
 }
 
-RunSummary run(fcs::Simulator& simulator, const Options& options)
+/** @param repeat number of this run, from 0: all have one bar */
+RunSummary run(fcs::Simulator& simulator, const Options& options, int repeat, fcs::tools::ProgressBar& progress)
 {
   RunSummary summary;
   summary.loading_seconds = simulator.loadingSeconds();
   const long total = countSteps(simulator.scenario());
-  bool going = judge(simulator, options, START, summary);
+  bool going = judge(simulator, options, START, summary, progress);
   std::unique_ptr<fcs::CsvRecorder> recorder;
   if (!options.output.empty())
     recorder = std::make_unique<fcs::CsvRecorder>(options.output);
   if (recorder)
     recorder->record(simulator, false);
-  fcs::tools::ProgressBar progress(total);
   const auto start = std::chrono::steady_clock::now();
   while (going && summary.steps < total && !stop_requested)
   {
     const bool taken = simulator.step().taken;
     const fcs::StepSummary& report = simulator.report();
-    going = judge(simulator, options, "step " + std::to_string(report.step), summary);
+    going = judge(simulator, options, "step " + std::to_string(report.step), summary, progress);
     if (!options.dump.empty() && !summary.ended && !stop_requested && (summary.steps + 1) % options.dump_every == 0)
       dumpProblem(simulator, options);
     if (!taken)
@@ -148,80 +131,13 @@ RunSummary run(fcs::Simulator& simulator, const Options& options)
     if (recorder)
       recorder->record(simulator, true);
     if (summary.steps++ % 100 == 0)
-      progress.update(summary.steps);
+      progress.update(repeat * total + summary.steps);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (recorder)
     recorder->close();
   summary.hash = simulator.stateHash();
   return summary;
-}
-
-json describeBody(const fcs::Simulator& simulator, int body)
-{
-  const Eigen::Isometry3d pose = fcs::rootPose(simulator, body);
-  const Eigen::Quaterniond orientation(pose.linear());
-  const fcs::Vector6d velocity = fcs::rootVelocity(simulator, body);
-  json joints = json::object();
-  const fcs::MultibodyModel& model = simulator.model(body);
-  for (size_t j = 0; j < model.joints.size(); ++j)
-  {
-    const fcs::Joint& joint = model.joints[j];
-    if (fcs::velocitySize(joint.type) == 1)
-      joints[joint.name] = {{"position", simulator.position(body)[joint.q_index]},
-                            {"velocity", simulator.velocity(body)[joint.v_index]},
-                            {"effort", simulator.effort(body, static_cast<int>(j))}};
-  }
-  return {{"position", list(pose.translation())},
-          {"orientation", {orientation.x(), orientation.y(), orientation.z(), orientation.w()}},
-          {"linear_velocity", list(velocity.head<3>())},
-          {"angular_velocity", list(velocity.tail<3>())},
-          {"joints", joints}};
-}
-
-json describe(const fcs::Simulator& simulator, const RunSummary& summary, bool identical)
-{
-  const fcs::EnergyLedger& energy = simulator.report().energy;
-  std::vector<Eigen::Vector3d> forces(simulator.bodyCount(), Eigen::Vector3d::Zero());
-  for (const fcs::ContactState& contact : simulator.contacts())
-  {
-    const Eigen::Vector3d force = contact.impulse / simulator.report().dt;
-    const int a = simulator.shape(contact.shape_a).body;
-    const int b = simulator.shape(contact.shape_b).body;
-    if (a >= 0)
-      forces[a] += force;
-    if (b >= 0)
-      forces[b] -= force;
-  }
-  json bodies = json::object();
-  json contact_force = json::object();
-  for (int body = 0; body < simulator.bodyCount(); ++body)
-  {
-    bodies[simulator.bodyName(body)] = describeBody(simulator, body);
-    contact_force[simulator.bodyName(body)] = list(forces[body]);
-  }
-  return {{"scenario", simulator.scenario().name},
-          {"steps", summary.steps},
-          {"simulated", static_cast<double>(summary.steps) * simulator.scenario().time_step},
-          {"seconds", summary.seconds},
-          {"steps_per_second", summary.seconds > 0.0 ? static_cast<double>(summary.steps) / summary.seconds : 0.0},
-          {"loading_seconds", summary.loading_seconds},
-          {"worst_residual", summary.worst_residual},
-          {"failed_steps", summary.failed_steps},
-          {"max_penetration", summary.max_penetration},
-          {"max_bilateral_violation", summary.max_bilateral_violation},
-          {"energy",
-           {{"kinetic", energy.kinetic},
-            {"potential", energy.potential},
-            {"actuators", energy.actuators},
-            {"friction", energy.friction},
-            {"impact", energy.impact},
-            {"joints", energy.joints},
-            {"balance_error", energy.balance_error}}},
-          {"state_hash", summary.hash},
-          {"repeats_identical", identical},
-          {"bodies", bodies},
-          {"contact_force", contact_force}};
 }
 
 fcs::Scenario load(const Options& options)
@@ -258,24 +174,32 @@ int runAll(const Options& options)
     throw std::invalid_argument("FILE is missing, expected a scenario (see --help)");
   const fcs::Scenario scenario = load(options);
   if (!options.dump.empty())
-    std::filesystem::create_directories(options.dump);
+    fcs::tools::makeFolder(options.dump);
   std::unique_ptr<fcs::Simulator> simulator;
   std::vector<RunSummary> runs;
+  auto progress = std::make_unique<fcs::tools::ProgressBar>(options.repeat * countSteps(scenario), scenario.name);
   for (int i = 0; i < options.repeat && (i == 0 || !stop_requested); ++i)
   {
     simulator = std::make_unique<fcs::Simulator>(scenario);
     if (i == 0)
       for (const std::string& warning : simulator->warnings())
+      {
+        const auto lock = progress->pause();
         std::cerr << "warning: " << warning << '\n';
+      }
     if (!options.load_state.empty())
       fcs::loadState(*simulator, options.load_state);
-    runs.push_back(run(*simulator, options));
+    runs.push_back(run(*simulator, options, i, *progress));
   }
+  progress.reset();
   const bool identical = std::all_of(
       runs.begin(), runs.end(), [&](const RunSummary& summary) { return summary.hash == runs.front().hash; });
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) { return a.seconds < b.seconds; });
   const RunSummary& median = runs[runs.size() / 2];
-  std::cout << describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
+  if (options.summary || (!options.json_output && isatty(STDOUT_FILENO) != 0))
+    std::cout << fcs::tools::summarize(*simulator, median, identical);
+  else
+    std::cout << fcs::tools::describe(*simulator, median, identical).dump(options.json_output ? -1 : 2) << '\n';
   if (!options.save_state.empty())
     fcs::saveState(*simulator, options.save_state);
   if (stop_requested)
@@ -290,7 +214,8 @@ int main(int argc, char** argv)
 {
   Options options;
   CLI::App app(
-      "Runs a scenario as fast as it can and prints one JSON object. Exit 0: every step converged, 1: one did "
+      "Runs a scenario as fast as it can. On a terminal it prints a summary, else one JSON object. Exit 0: every step "
+      "converged, 1: one did "
       "not, 2: bad input, 130: ended by SIGINT or SIGTERM (files and JSON are of the steps done).",
       "run_scenario");
   app.add_option("FILE", options.file, "scenario (YAML), or the name of one in config/scenarios");
@@ -308,7 +233,10 @@ int main(int argc, char** argv)
       ->check(CLI::IsMember({"stop", "pause", "hold", "accept"}));
   app.add_flag("--no-fallback", options.no_fallback, "no other method is tried where the solver fails");
   app.add_option("--output", options.output, "folder for states.csv, joints.csv, contacts.csv, steps.csv");
-  app.add_flag("--json", options.json_output, "the JSON object on one line");
+  CLI::Option* line = app.add_flag("--json", options.json_output, "the JSON object on one line, on a terminal too");
+  app.add_flag("--summary", options.summary,
+               "what stands where, and whether the run can be trusted, in a few lines; the default on a terminal")
+      ->excludes(line);
   app.add_option("--repeat", options.repeat,
                  "runs; the median time is printed, and whether all runs gave the same bits")
       ->check(CLI::Range(1, 100000));

@@ -1,17 +1,17 @@
 #pragma once
 /**
  * @file tool_support.h
- * @brief What several command-line tools share: exit codes, progress bar, clocks, the frame of main().
+ * @brief What several command-line tools share: exit codes, clocks, options, the frame of main().
  */
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -21,6 +21,7 @@
 #include "frictional_contact_sim/config/nearest_name.h"
 #include "frictional_contact_sim/solver/solver.h"
 #include "frictional_contact_sim/solver/solver_options.h"
+#include "progress_bar.h"
 
 namespace frictional_contact_sim
 {
@@ -55,57 +56,6 @@ inline double threadSeconds()
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
-
-/** @brief A bar on the error output, only on a terminal and only once the work has lasted two seconds. */
-class ProgressBar
-{
-public:
-  explicit ProgressBar(long total)
-    : total_(total), terminal_(isatty(STDERR_FILENO) != 0), start_(std::chrono::steady_clock::now())
-  {
-  }
-  ~ProgressBar() { clear(); }
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
-  /**
-   * @brief Cheap enough for every step of fast work: looks at the clock only when percentage or text have changed.
-   * @param text stands behind the bar
-   */
-  void update(long done, const std::string& text = "")
-  {
-    const long percent = total_ > 0 ? 100 * done / total_ : 100;
-    if (!terminal_ || (percent == last_ && text == text_))
-      return;
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() < 2.0)
-      return;
-    last_ = percent;
-    text_ = text;
-    shown_ = true;
-    const auto filled = static_cast<size_t>(percent * WIDTH / 100);
-    std::cerr << WIPE << '[' << std::string(filled, '#') << std::string(WIDTH - filled, '.') << "] " << percent << " % "
-              << text << std::flush;
-  }
-
-  /** @brief Wipes the bar, so that a line of text can be written; the next update draws it again. */
-  void clear()
-  {
-    if (shown_)
-      std::cerr << WIPE << std::flush;
-    shown_ = false;
-    last_ = -1;
-  }
-
-private:
-  static constexpr size_t WIDTH = 40;
-  static constexpr const char* WIPE = "\r\033[K";
-  long total_;
-  long last_ = -1;
-  std::string text_;
-  bool terminal_;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /** @brief --tolerance, --max-iterations, --time-limit and --repeat of the tools that solve FCLib files. */
 inline void addSolveOptions(CLI::App& app, StoppingOptions& stopping, int& repeat)
@@ -165,7 +115,8 @@ inline std::ofstream openOutput(const std::string& path)
 {
   std::ofstream file(path);
   if (!file)
-    throw std::runtime_error("cannot write " + path);
+    throw std::runtime_error("cannot write " + path +
+                             (std::filesystem::is_directory(path) ? ": it is a folder, expected a file" : ""));
   return file;
 }
 
@@ -177,10 +128,30 @@ inline std::string historyRow(const HistoryEntry& entry)
   return text;
 }
 
-/** @brief Parses, runs, and turns every exception into one line and BAD_INPUT. run() returns the exit code. */
+/** @brief A file that is to be read. @throws std::invalid_argument in one line where it is a folder */
+inline void expectNoFolder(const std::string& path, const std::string& kind)
+{
+  if (std::filesystem::is_directory(path))
+    throw std::invalid_argument(path + ": is a folder, expected " + kind);
+}
+
+/** @brief Makes a folder for results. @throws std::invalid_argument in one line where that cannot be */
+inline void makeFolder(const std::string& path)
+{
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error)
+    throw std::invalid_argument(path + ": " + error.message() + ", expected a folder for the results");
+}
+
+/**
+ * @brief Parses, runs, and turns every exception into one line and BAD_INPUT. run() returns the exit code. Every tool
+ * has --version.
+ */
 template <typename Run>
 int runTool(CLI::App& app, int argc, char** argv, const Run& run)
 {
+  app.set_version_flag("--version", app.get_name() + " " + FRICTIONAL_CONTACT_SIM_VERSION, "print it and leave");
   try
   {
     app.parse(argc, argv);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""examples/pick_and_place.py, by topics and by the action: the part is lifted, held without creep, and set down."""
+"""examples/rospy_controller/pick_and_place.py, by topics and by the action: the part is lifted, held without creep, and set down."""
 import math
 import os
 import signal
@@ -45,7 +45,7 @@ class PickAndPlaceTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "pick.bag")
             recorder = subprocess.Popen(["rosrun", "frictional_contact_sim", "record_bag", bag, CONTACTS, ODOM])
-            script = subprocess.run([str(node_runner.PACKAGE_DIR / "examples/pick_and_place.py"), *arguments],
+            script = subprocess.run([str(node_runner.PACKAGE_DIR / "examples/rospy_controller/pick_and_place.py"), *arguments],
                                     timeout=node_runner.TIMEOUT, check=False)
             self.assertEqual(0, node.interrupt(), node.stderr())
             recorder.send_signal(signal.SIGINT)

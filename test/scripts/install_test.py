@@ -52,13 +52,28 @@ class InstallTest(unittest.TestCase):
         self.assertIn('failed steps 0', done.stdout)
         self.assertNotIn('has died', done.stdout + done.stderr)
 
+    def test_a_project_of_its_own_finds_the_library(self):
+        source = self.setup.parent / 'share/frictional_contact_sim/examples/library_without_ros'
+        build = f'{self.folder.name}/many_simulations'
+        done = self.run_there(f'cmake -S {source} -B {build} -DCMAKE_BUILD_TYPE=Debug && cmake --build {build} && '
+                              f'{build}/many_simulations {self.setup.parent}/share/frictional_contact_sim/config/scenarios/grasp.yaml 5')
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        self.assertEqual(8, done.stdout.count(' cube at ('))
+
+    def test_completion_comes_with_setup_bash(self):
+        done = self.run_there('bash --norc -i -c ". ' + str(self.setup) + '; COMP_WORDS=(scripts/run run_s); COMP_CWORD=1; '
+                              '_frictional_contact_sim_run; echo \\$COMPREPLY" </dev/null')
+        self.assertEqual('run_scenario\n', done.stdout, done.stderr)
+
     def test_a_failure_is_red(self):
         done = self.run_there('roslaunch -p {port} frictional_contact_sim simulate.launch scenario:=nosuch')
         self.assertIn('has died', done.stdout + done.stderr)
 
     def test_launch_files_are_whole(self):
-        for path in pathlib.Path(self.setup.parent).rglob('*.launch'):
-            done = self.run_there(f'/usr/share/roslaunch/scripts/roslaunch-check {path}')
+        folders = {path.parent for path in pathlib.Path(self.setup.parent).rglob('*.launch')}
+        self.assertGreaterEqual(len(folders), 3)
+        for folder in folders:
+            done = self.run_there(f'/usr/share/roslaunch/scripts/roslaunch-check {folder}')
             self.assertEqual(0, done.returncode, done.stdout + done.stderr)
 
 
