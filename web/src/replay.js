@@ -1,4 +1,4 @@
-// The replay page: reads the recording that scripts/replay put into it, and shows it.
+// The replay page: reads the recording that src/tools/replay put into it, and shows it.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Bodies } from "./bodies.js";

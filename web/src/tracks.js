@@ -1,4 +1,4 @@
-// Poses over time by keyframes: straight in between, as keyframes() of scripts/recording/pack.py promises.
+// Poses over time by keyframes: straight in between, as keyframes() of src/tools/recording/pack.py promises.
 import { columns, integers } from "./unpack.js";
 
 // The last index in [first, end) whose value is at most `value`.

@@ -1,4 +1,4 @@
-// Reads the columns that scripts/recording/pack.py writes: deflated bytes by significance, zigzag differences of rounded numbers.
+// Reads the columns that src/tools/recording/pack.py writes: deflated bytes by significance, zigzag differences of rounded numbers.
 
 // Bytes of deflated base64.
 export async function inflate(text) {

@@ -67,8 +67,8 @@ def run(name, work):
 
 def version():
     """Of the package, in a checkout and where it is installed."""
-    here = pathlib.Path(__file__).resolve().parent.parent
-    for path in (here.parent / "package.xml", here.parent.parent / "share" / "frictional_contact_sim" / "package.xml"):
+    here = pathlib.Path(__file__).resolve().parent  # src/tools/recording, lib/NAME/recording
+    for path in (here.parent.parent.parent / "package.xml", here.parent.parent.parent / "share" / "frictional_contact_sim" / "package.xml"):
         if path.is_file():
             return re.search(r"<version>(.*?)</version>", path.read_text())[1]
     return "unknown"
