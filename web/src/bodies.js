@@ -180,11 +180,11 @@ export class Bodies {
     return new THREE.Vector3().setFromMatrixPosition(this.matrices[link.track]);
   }
 
-  // A typical body's size [m]: half of them are larger. 0 without bodies.
+  // Between the sizes of a typical body and of the largest one [m]; 0 without bodies.
   typicalSize() {
     const things = this.data.bodies.map((body) => body.links.map(({ track }) => track)).concat(this.data.shapes.map(({ track }) => [track]));
     const sizes = things.map((tracks) => largestEdge(this.box(tracks))).filter((size) => size > 0).sort((a, b) => a - b);
-    return sizes.length ? sizes[sizes.length >> 1] : 0;
+    return sizes.length ? Math.sqrt(sizes[(sizes.length - 1) >> 1] * sizes[sizes.length - 1]) : 0;
   }
 
   // Around what is drawn of tracks, in the world, where they are now; empty where they are not there.

@@ -4,7 +4,7 @@ import { MODE_COLORS } from "./colors.js";
 import { typicalForce } from "./series.js";
 
 const UP = new THREE.Vector3(0, 1, 0);
-const SHAFT = 0.018, HEAD = 0.045, HEAD_LENGTH = 0.1, CONE_HEIGHT = 0.16; // in sizes of a typical body
+const SHAFT = 0.018, HEAD = 0.045, HEAD_LENGTH = 0.1, CONE_HEIGHT = 0.16; // in sizes of bodies
 const SHORTEST = 0.08, LONGEST = 3; // arrows, in the same
 const MOST_CONE = 2; // mu that a cone is drawn for
 const LABELS = 40;

@@ -107,14 +107,11 @@ class BagReader:
             self.notes.append("time was set back in this bag: shown is what came after that")
         self.progress.start(total, "reading")
         lasting = {f"{self.node}/bodies", "/tf_static"}
-        try:
-            for count, (topic, message, time) in enumerate(self.bag.read_messages(topics=list(handlers))):
-                if begin is None or time >= begin or topic in lasting:
-                    handlers[topic](message)
-                if count % 500 == 0:
-                    self.progress.update(count)
-        except Exception as error:  # what a damaged bag may raise: struct, zlib, bz2, lz4, genpy, rosbag errors
-            raise InputError(f"{self.path}: the bag is damaged: {' '.join(str(error).split())}") from None
+        for count, (topic, message, time) in enumerate(self.bag.read_messages(topics=list(handlers))):
+            if begin is None or time >= begin or topic in lasting:
+                handlers[topic](message)
+            if count % 500 == 0:
+                self.progress.update(count)
         self.progress.end()
         return self.recording()
 
@@ -237,6 +234,11 @@ class BagReader:
 def read_bag(path, node, robots, progress):
     """@param node name of the simulator_node, empty: the only one. @param robots {body or "": (URDF document, folder)}
     @return Recording and the lines that say which topics are missing"""
-    reader = BagReader(path, node, robots, progress)
-    with reader.bag:
-        return reader.read(), reader.missing("contacts", "step_report")
+    try:
+        reader = BagReader(path, node, robots, progress)
+        with reader.bag:
+            return reader.read(), reader.missing("contacts", "step_report")
+    except InputError:
+        raise
+    except Exception as error:  # what rosbag, genpy, struct, zlib, bz2, lz4 raise where a bag is damaged: any kind
+        raise InputError(f"{path}: the bag is damaged: {' '.join(str(error).split()) or type(error).__name__}") from None
