@@ -18,7 +18,7 @@ from tf2_msgs.msg import TFMessage  # noqa: E402
 from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 
 NODE = "/simulator_node"
-HOSTILE = ['</script><script>window.injected=1</script>', 'a"b\'c', "<!--", "]]>&amp;", "name with spaces", "\u2028\u00e9\U0001f916", "<!--DATA-->", "\\u003c"]
+HOSTILE = ['</script><script>window.injected=1</script>', 'a"b\'c', "<!--", "]]>&amp;", "name with spaces", "\u2028\u00e9\U0001f916", "<!--DATA-->", "\\u003c", "_$\\frac{1$"]
 
 
 def attribute(text):

@@ -51,7 +51,7 @@ class Table:
     def numbers(self, chunk, names):
         """(rows, len(names))"""
         try:
-            return np.array([np.array(chunk[name], dtype=float) for name in names]).T
+            return np.array([np.fromiter(map(float, chunk[name]), float) for name in names]).T
         except ValueError:
             for name, row in itertools.product(names, range(len(chunk[names[0]]))):
                 try:
@@ -67,16 +67,17 @@ class FolderReader:
 
     def tracks(self, name, key_columns, value_columns):
         """{key: Track} of a table with a column time."""
-        times, values = {}, {}
+        numbers_of, keys, rows = {}, [], []
         table = Table(self.folder / name, ["time"] + key_columns + value_columns, self.progress)
         for chunk in table.chunks():
-            numbers = table.numbers(chunk, ["time"] + value_columns)
-            keys = np.array([" ".join(key) for key in zip(*(chunk[column] for column in key_columns))])
-            for key in dict.fromkeys(keys):
-                rows = numbers[keys == key]
-                times.setdefault(key, []).append(rows[:, 0])
-                values.setdefault(key, []).append(rows[:, 1:])
-        return {key: Track(np.concatenate(times[key]), np.concatenate(values[key])) for key in times}
+            rows.append(table.numbers(chunk, ["time"] + value_columns))
+            keys.append(np.array([numbers_of.setdefault(key, len(numbers_of)) for key in zip(*(chunk[column] for column in key_columns))]))
+        if not rows:
+            return {}
+        keys, rows = np.concatenate(keys), np.concatenate(rows)
+        rows = rows[np.argsort(keys, kind="stable")]
+        ends = np.cumsum(np.bincount(keys, minlength=len(numbers_of)))
+        return {key: Track(rows[begin:end, 0], rows[begin:end, 1:]) for key, begin, end in zip(numbers_of, np.append(0, ends), ends)}
 
     def contacts(self, times):
         rows = ContactRows()
@@ -140,10 +141,10 @@ class FolderReader:
         joints = self.tracks("joints.csv", ["body", "joint"], ["position"]) if (self.folder / "joints.csv").is_file() else {}
         contacts, sides = self.contacts(times)
         report_times, reports = self.reports()
-        bodies, ground = self.bodies(roots)
+        bodies, ground = self.bodies([name for name, in roots])
         for body in bodies:
-            body.root = roots.get(body.name)
-            body.joints = {key[len(body.name) + 1:]: track for key, track in joints.items() if key.startswith(body.name + " ")}
+            body.root = roots.get((body.name,))
+            body.joints = {joint: track for (name, joint), track in joints.items() if name == body.name}
         return Recording(str(self.folder), times, contacts, sides, report_times, reports, bodies, [], ground, self.notes)
 
 

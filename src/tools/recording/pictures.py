@@ -1,4 +1,6 @@
 """PNG pictures of a recording, one a quantity. Needs python3-matplotlib (scripts/packages_plots.txt)."""
+import warnings
+
 import numpy as np
 
 from .model import ENERGIES, InputError, MODES
@@ -16,6 +18,7 @@ def pyplot():
     except ImportError:
         raise InputError("python3-matplotlib is missing: scripts/install_dependencies packages_plots.txt") from None
     matplotlib.use("Agg")
+    warnings.filterwarnings("ignore", "Glyph")  # a name in a script that the font does not have: a box is drawn
     import matplotlib.pyplot
     return matplotlib.pyplot
 
@@ -30,6 +33,11 @@ def envelope(times, values):
     place = np.minimum(((times - times[0]) / width).astype(int), BINS - 1)
     first = np.flatnonzero(np.diff(place, prepend=-1))  # times do not decrease
     return times[first], np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
+
+
+def as_label(name):
+    """A name as matplotlib shows it: no formula, and not hidden where it begins with an underscore."""
+    return (" " if name.startswith("_") else "") + name.replace("$", r"\$")
 
 
 def line(axes, times, values, label, color=None):
@@ -95,7 +103,7 @@ def draw_contacts(pictures, plt, recording, folder):
     contacts, times = recording.contacts, recording.times
     figure, axes = plt.subplots(figsize=(9, 4.5))
     for name, force in normal_forces(recording):
-        line(axes, times, force, name)
+        line(axes, times, force, as_label(name))
     finish(pictures, plt, figure, axes, "normal contact forces", "sum of normal forces on the link [N]", folder, "normal_forces")
     figure, axes = plt.subplots(figsize=(9, 4.5))
     for number, name in enumerate(MODES):
