@@ -69,7 +69,7 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   for (const ros::Publisher& publisher : body_joints_.publishers())
     data_topics_.insert(publisher.getTopic());
   markers_publisher_ = advertise(private_node, "markers", LATEST_QUEUE, &StepPublisher::allMarkers);
-  // Latched, but read from the files only for somebody; after a spawn or delete roscpp announces the old subscribers anew.
+  // Read from the files for each new subscriber; after a spawn or delete roscpp announces the old ones anew.
   bodies_publisher_ = private_node.advertise<Bodies>("bodies", LATEST_QUEUE,
                                                      [this](const ros::SingleSubscriberPublisher& subscriber)
                                                      { subscriber.publish(bodies()); });
@@ -140,8 +140,8 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
   std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_, &markers_publisher_, &tf_publisher_,
-                                                   &bodies_publisher_};
+                                                   &step_report_publisher_,  &markers_publisher_,
+                                                   &tf_publisher_,           &bodies_publisher_};
   if (publish_clock_)
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)

@@ -116,6 +116,7 @@ export class Bodies {
   }
 
   push(item) {
+    if (!item.geometry.attributes.normal) item.geometry.computeVertexNormals();
     if (!item.geometry.boundingBox) item.geometry.computeBoundingBox();
     const box = item.geometry.boundingBox.clone().applyMatrix4(item.local);
     if (![...box.min, ...box.max].every(Number.isFinite)) return;

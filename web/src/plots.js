@@ -107,5 +107,11 @@ export function addPlots(plots, data, times, contacts, reportTimes, reports) {
     plots.add("deepest penetration", "m", reportTimes, [{ label: "depth", values: shown(reports.max_penetration) }]);
     plots.add("energy", "J", reportTimes, data.energies.map((name) => ({ label: name.replace("_", " "), values: shown(reports[name]) })));
   }
+  if (!plots.plots.length) {
+    const empty = document.createElement("p");
+    empty.className = "empty";
+    empty.textContent = "Neither contacts nor step reports in this recording: nothing to plot.";
+    plots.element.append(empty);
+  }
   return { showForces, largest };
 }

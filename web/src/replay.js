@@ -98,7 +98,8 @@ class Replay {
     grid.rotation.x = Math.PI / 2;
     grid.position.set(Math.round(center.x / cell) * cell, Math.round(center.y / cell) * cell, height);
     const plane = new THREE.Mesh(new THREE.PlaneGeometry(cells * cell, cells * cell),
-                                 new THREE.MeshBasicMaterial({ color: "#dfe2dd", side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 }));
+                                 new THREE.MeshBasicMaterial({ color: "#dfe2dd", side: THREE.DoubleSide, transparent: true, opacity: 0.8, depthWrite: false }));
+    plane.renderOrder = -1; // what is below shows through
     plane.position.copy(grid.position);
     this.scene.add(plane, grid);
     this.panel.cell = cell;

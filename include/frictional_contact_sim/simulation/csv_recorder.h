@@ -1,8 +1,8 @@
 #pragma once
 /**
  * @file csv_recorder.h
- * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder, and what its bodies look like:
- * bodies.csv and bodies/NAME.urdf (docs/interfaces.md).
+ * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder, and what its bodies look
+ * like: bodies.csv and copies of their URDFs (docs/interfaces.md).
  *
  * Contact columns: force is impulse / dt in world axes, on body_a [N]; velocity is of a relative to b [m/s].
  */
