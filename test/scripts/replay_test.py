@@ -106,7 +106,7 @@ class PackTest(unittest.TestCase):
     def test_forces_keep_four_digits(self):
         force = self.rng.normal(size=(1000, 3)) * 10.0**self.rng.uniform(-3, 6, (1000, 1))
         error = np.linalg.norm(pack.round_forces(force, 0.0) - force, axis=1)
-        self.assertLess(np.max(error / np.linalg.norm(force, axis=1)), 1e-4)
+        self.assertLess(np.max(error / np.linalg.norm(force, axis=1)), 1.1e-4)  # sqrt(3) / 2^14
 
     def test_samples_between_turn_the_short_way(self):
         track = Track(np.array([0.0, 1.0]), np.array([[0, 0, 0, 0, 0, 0, 1.0], [2, 0, 0, 0, 0, -np.sin(0.5), -np.cos(0.5)]]))
@@ -160,11 +160,11 @@ class BagTest(unittest.TestCase):
                 self.assertEqual([contact.body_a, contact.link_a], data["sides"][int(found["side_a"][row])])
                 self.assertEqual(["ground", contact.link_b], data["sides"][int(found["side_b"][row])])
                 np.testing.assert_allclose(found["position"][row] + origin, vector["position"], atol=0.6 * resolution)
-                np.testing.assert_allclose(found["normal"][row], vector["normal"], atol=0.6 / 4096)
+                np.testing.assert_allclose(found["normal"][row], vector["normal"], atol=0.6 / pack.NORMAL)
                 # Four digits, but not finer than a millionth of a typical force (here below 100 N).
-                self.assertLess(np.linalg.norm(found["force"][row] - vector["force"]), max(1e-4 * np.linalg.norm(vector["force"]), 1e-4))
+                self.assertLess(np.linalg.norm(found["force"][row] - vector["force"]), max(1.1e-4 * np.linalg.norm(vector["force"]), 1e-4))
                 slip = np.linalg.norm(vector["relative_velocity"] - vector["relative_velocity"] @ vector["normal"] * vector["normal"])
-                self.assertAlmostEqual(slip, found["slip"][row], delta=1e-6)
+                self.assertAlmostEqual(slip, found["slip"][row], delta=max(1e-6, 2**-12 * slip))
                 self.assertAlmostEqual(contact.gap, found["gap"][row], delta=1e-3 * resolution)
                 self.assertAlmostEqual(contact.friction, found["friction"][row], delta=1e-6)
                 self.assertEqual(contact.mode, found["mode"][row])

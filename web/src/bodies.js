@@ -10,7 +10,7 @@ import { inflate } from "./unpack.js";
 const NOWHERE = new THREE.Matrix4().makeScale(0, 0, 0);
 const PRIMITIVES = {
   BoxGeometry: new THREE.BoxGeometry(1, 1, 1),
-  SphereGeometry: new THREE.SphereGeometry(1, 32, 20),
+  SphereGeometry: new THREE.SphereGeometry(1, 24, 16),
   CylinderGeometry: new THREE.CylinderGeometry(1, 1, 1, 32),
 };
 

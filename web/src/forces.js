@@ -53,17 +53,18 @@ export class Forces {
     const contacts = this.contacts, size = this.size;
     const place = new THREE.Vector3(), direction = new THREE.Vector3(), scale = new THREE.Vector3();
     const turn = new THREE.Quaternion(), matrix = new THREE.Matrix4();
+    const [x, y, z] = contacts.position, [nx, ny, nz] = contacts.normal, [fx, fy, fz] = contacts.force;
     let arrows = 0, cones = 0;
     contacts.at(frame, (run) => {
       const color = this.colors[contacts.mode[run]] ?? this.colors[0];
-      place.set(...contacts.position.map((column) => column[run]));
-      direction.set(...contacts.normal.map((column) => column[run]));
+      place.set(x[run], y[run], z[run]);
+      direction.set(nx[run], ny[run], nz[run]);
       const height = CONE_HEIGHT * size, radius = Math.min(contacts.friction[run], MOST_CONE) * height;
       turn.setFromUnitVectors(UP, direction.normalize());
       this.cones.setMatrixAt(cones, matrix.compose(place, turn, scale.set(radius, height, radius)));
       this.cones.setColorAt(cones++, color);
       if (!(contacts.size[run] > 0)) return;
-      direction.set(...contacts.force.map((column) => column[run])).normalize();
+      direction.set(fx[run], fy[run], fz[run]).normalize();
       turn.setFromUnitVectors(UP, direction);
       const length = Math.min(Math.max(contacts.size[run] * this.scale, SHORTEST * size), LONGEST * size);
       const head = Math.min(HEAD_LENGTH * size, 0.5 * length);

@@ -138,12 +138,12 @@ export class Panel {
   showContact(chosen, run) {
     this.contact.hidden = !chosen;
     if (!chosen) return;
-    const { contacts, data } = this.replay, at = (list) => list.map((column) => written(column[run], 5)).join("  ");
+    const { contacts, data } = this.replay, at = (list) => list.map((column) => written(column[run], 4)).join("  ");
     const rows = run < 0 ? [["contact", "not there at this time"]] : [
       ["on", contacts.sideName(contacts.sideA(run))], ["from", contacts.sideName(contacts.sideB(run))], ["mode", data.modes[contacts.mode[run]]],
-      ["force [N]", at(contacts.force)], ["r_N [N]", written(contacts.normalForce[run], 5)], ["|r_T| [N]", written(contacts.tangentialForce[run], 5)],
-      ["mu", written(contacts.friction[run], 4)], ["|r_T| / (mu r_N)", written(contacts.use(run), 4)], ["slip [m/s]", written(contacts.slip[run], 3)],
-      ["gap [m]", written(contacts.gap[run], 3)], ["position [m]", contacts.position.map((column, axis) => written(column[run] + data.origin[axis], 6)).join("  ")],
+      ["force [N]", at(contacts.force)], ["r_N [N]", written(contacts.normalForce[run], 4)], ["|r_T| [N]", written(contacts.tangentialForce[run], 4)],
+      ["mu", written(contacts.friction[run], 4)], ["|r_T| / (mu r_N)", written(contacts.use(run), 3)], ["slip [m/s]", written(contacts.slip[run], 3)],
+      ["gap [m]", written(contacts.gap[run], 3)], ["position [m]", contacts.position.map((column, axis) => written(column[run] + data.origin[axis], 5)).join("  ")],
       ["normal", at(contacts.normal)], ["id", contacts.id(run)]];
     this.contact.replaceChildren(...rows.map(([name, value]) => {
       const row = element("tr");

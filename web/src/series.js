@@ -48,10 +48,11 @@ export function modeCount(contacts, mode) {
   return sums(contacts, () => 1, (run) => contacts.mode[run] === mode);
 }
 
-// Largest |r_T| / (mu r_N) of a frame; null where no contact carries anything.
+// Largest |r_T| / (mu r_N) of a frame over contacts that carry a thousandth of the median force at least: of less the rounded numbers
+// say little. null where there is none.
 export function frictionUse(contacts) {
   const result = new Array(contacts.frames).fill(null);
-  const least = 1e-6 * typicalForce(contacts);
+  const least = 1e-3 * typicalForce(contacts);
   for (let run = 0; run < contacts.count; ++run) {
     const use = contacts.use(run);
     if (!(contacts.normalForce[run] > least) || !Number.isFinite(use)) continue;

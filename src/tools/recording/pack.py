@@ -10,7 +10,9 @@ import numpy as np
 from . import rotation
 
 BLOCK = 64        # longest stretch between two keyframes [frames]
-FORCE_BITS = 15   # of the largest component of a contact force
+NORMAL = 32768.0   # steps of a normal's parts
+FORCE_BITS = 14   # of the largest component of a contact force
+SLIP_BITS = 12    # of a sliding speed
 LARGEST = 2**29   # of a rounded number: differences and their zigzag stay within 32 bits
 
 
@@ -128,6 +130,12 @@ def unpack_tracks(packed, count):
     return result
 
 
+def round_slip(speed):
+    """(m) to SLIP_BITS, nothing below a micrometre a second."""
+    mantissa, exponent = np.frexp(np.where(speed < 1e-6, 0.0, speed))
+    return np.ldexp(np.rint(np.ldexp(mantissa, SLIP_BITS)), exponent - SLIP_BITS)
+
+
 def round_forces(force, smallest):
     """(m, 3), each contact's components to FORCE_BITS of the largest of them; none finer than `smallest`."""
     largest = np.max(np.abs(force), axis=1, initial=0.0)
@@ -150,10 +158,10 @@ def pack_contacts(contacts, origin, position_resolution):
         new[1:] |= column[1:] != column[:-1]
     key, first, frame = np.cumsum(new) - 1, np.flatnonzero(new), contacts.frame
     rounded = np.concatenate([np.rint((contacts.position - origin) / position_resolution) * position_resolution,
-                              np.rint(contacts.normal * 4096.0) / 4096.0,
+                              np.rint(contacts.normal * NORMAL) / NORMAL,
                               round_forces(contacts.force, 1e-6 * typical),
                               np.rint(contacts.gap / (1e-3 * position_resolution))[:, None] * 1e-3 * position_resolution,
-                              np.float32(np.rint(np.linalg.norm(slip, axis=1) * 1e6) * 1e-6)[:, None],
+                              round_slip(np.linalg.norm(slip, axis=1))[:, None],
                               np.float32(contacts.friction)[:, None], contacts.mode[:, None]], axis=1)
     same = (np.diff(key) == 0) & (np.diff(frame) == 1) & (np.diff(rounded, axis=0) == 0.0).all(axis=1)
     starts = np.flatnonzero(np.concatenate([[True], ~same])) if len(key) else np.zeros(0, int)
@@ -164,7 +172,7 @@ def pack_contacts(contacts, origin, position_resolution):
                      "id_high": pack_numbers(identity >> np.uint64(40)),
                      "side_a": pack_numbers(contacts.side_a[first]), "side_b": pack_numbers(contacts.side_b[first])},
             "key": pack_numbers(key[starts]), "start": pack_numbers(frame[starts]), "length": pack_numbers(lengths),
-            "position": pack_numbers(runs[:, 0:3], position_resolution, 3), "normal": pack_numbers(runs[:, 3:6], 1.0 / 4096.0, 3),
+            "position": pack_numbers(runs[:, 0:3], position_resolution, 3), "normal": pack_numbers(runs[:, 3:6], 1.0 / NORMAL, 3),
             "force": pack_floats(runs[:, 6:9].T), "gap": pack_numbers(runs[:, 9], 1e-3 * position_resolution),
             "slip": pack_floats(runs[:, 10]), "friction": pack_floats(runs[:, 11]), "mode": pack_numbers(runs[:, 12])}
 
