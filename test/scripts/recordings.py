@@ -149,6 +149,7 @@ class RandomBag:
             if "markers" in topics:
                 marker = Marker(ns="bodies", id=number, type=1 + number % 3, scale=Vector3(0.1, 0.2, 0.3))
                 marker.header.stamp = self.times[i]
+                marker.color.r, marker.color.g, marker.color.a = 0.8, 0.4, 0.9
                 fill_pose(marker.pose, pose)
                 yield f"{NODE}/markers", MarkerArray([marker])
         if "joint_states" in topics:

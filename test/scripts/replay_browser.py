@@ -98,7 +98,9 @@ class BrowserTest(unittest.TestCase):
             report.residual = float("nan")
         bag.write(self.root / "a.bag", ("contacts", "step_report", "markers"))
         self.replay(self.root / "a.bag")
-        self.check_clean(browse(self.html, "markers.png", {"frames": [0, 9]}))
+        result = browse(self.html, "markers.png", {"frames": [0, 9], "follow": 0})
+        self.check_clean(result)
+        self.assertEqual([f"shape {number}" for number in range(len(bag.robots))], result["bodies"][1:])
         corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
         faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
         (self.root / "a.stl").write_bytes(b" " * 80 + struct.pack("<I", 4) + b"".join(

@@ -39,6 +39,9 @@ export class Bodies {
     this.matrices = Array.from({ length: tracks.count }, () => new THREE.Matrix4());
     this.known = new Uint8Array(tracks.count);
     this.items = []; // {geometry, material, color, opacity, track, local}
+    // What the camera can follow: bodies by their first drawn link, shapes of markers.
+    this.things = data.bodies.filter(({ links }) => links.length).map(({ name, links }) => ({ name, track: links[0].track }))
+      .concat(data.shapes.map(({ track }, number) => ({ name: `shape ${number}`, track })));
     this.boxes = []; // of each track: around what is drawn, in its own frame
   }
 
@@ -174,11 +177,10 @@ export class Bodies {
     }
   }
 
-  // Where a body is now: the origin of its first drawn link; null where it is not there.
-  center(body) {
-    const link = this.data.bodies[body].links[0];
-    if (!link || this.matrices[link.track].equals(NOWHERE)) return null;
-    return new THREE.Vector3().setFromMatrixPosition(this.matrices[link.track]);
+  // Where a thing is now; null where it is not there.
+  center(thing) {
+    const matrix = this.matrices[this.things[thing].track];
+    return matrix.equals(NOWHERE) ? null : new THREE.Vector3().setFromMatrixPosition(matrix);
   }
 
   // Between the sizes of a typical body and of the largest one [m]; 0 without bodies.

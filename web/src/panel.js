@@ -78,9 +78,9 @@ export class Panel {
     this.bar.append(back, this.button, on, this.slider, this.clock, labelled("speed ", speed));
   }
 
-  // The choices, once bodies are known. @param showForces(side) plots one side, or with -1 the largest ones
-  fill(bodies, sides, showForces) {
-    const { replay } = this, follow = choice([["nobody", -1], ...bodies.map((body, index) => [body.name, index])], -1, (value) => replay.follow(Number(value)));
+  // The choices, once it is known what can be followed. @param showForces(side) plots one side, or with -1 the largest ones
+  fill(things, sides, showForces) {
+    const { replay } = this, follow = choice([["nobody", -1], ...things.map(({ name }, index) => [name, index])], -1, (value) => replay.follow(Number(value)));
     const plotted = choice([["the largest", -1], ...sides.map((side) => [replay.contacts.sideName(side), side])], -1, (value) => {
       showForces(Number(value));
       replay.dirty = true;

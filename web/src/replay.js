@@ -42,7 +42,7 @@ class Replay {
     this.size = this.bodies.typicalSize() || data.size;
     this.plots = new Plots(this.panel.plots, (time) => this.seek(time));
     const { showForces, largest } = addPlots(this.plots, data, this.times, this.contacts, this.reportTimes, this.reports);
-    this.panel.fill(data.bodies, sidesInContact(this.contacts), (side) => showForces(side < 0 ? largest : [side]));
+    this.panel.fill(this.bodies.things, sidesInContact(this.contacts), (side) => showForces(side < 0 ? largest : [side]));
     try {
       this.openView();
     } catch (error) {
@@ -177,9 +177,9 @@ class Replay {
     this.forces.placeLabels(this.camera, width, height);
   }
 
-  follow(body) {
-    this.followed = body;
-    const center = body >= 0 ? this.bodies.center(body) : null;
+  follow(thing) {
+    this.followed = thing;
+    const center = thing >= 0 ? this.bodies.center(thing) : null;
     if (!center || !this.renderer) return;
     const move = center.sub(this.controls.target);
     this.camera.position.add(move);
