@@ -234,6 +234,37 @@ class BagTest(unittest.TestCase):
         self.assertIn(f"{NODE}/step_report; record it: roslaunch", missing[0])
         self.assertIn(f"{NODE}/bodies", recording.notes[0])
 
+    def test_the_node_is_found_or_asked_for(self):
+        bag = RandomBag(np.random.default_rng(SEED + 7), 4)
+        bag.write(self.path)
+        other = self.path.with_name("nodes.bag")
+
+        def copy(names):
+            with rosbag.Bag(str(self.path)) as source, rosbag.Bag(str(other), "w") as target:
+                for topic, message, time in source.read_messages():
+                    for name in names:
+                        target.write(topic.replace(NODE, name), message, time)
+        copy(["/ns/sim"])
+        with rosbag.Bag(str(other), "a") as target:  # of a link that is named contacts
+            target.write("/ns/sim/contacts/contacts", recordings.ContactArray(), bag.times[0])
+        self.compare_contacts(bag, page_of(other)[1], range(4))
+        copy(["/first", "/second"])
+        with self.assertRaisesRegex(InputError, "found contacts of /first, /second, expected --node"):
+            progress.read(other, "", {}, progress.Progress())
+        self.assertEqual(4, len(progress.read(other, "/second", {}, progress.Progress())[0].times))
+
+    def test_a_circle_of_transforms_is_no_place(self):
+        bag = RandomBag(np.random.default_rng(SEED + 8), 4)
+        bag.write(self.path, ("contacts", "step_report", "bodies"))
+        with rosbag.Bag(str(self.path), "a") as target:
+            for child, parent in ((bag.robots[0].links[0], "a"), ("a", bag.robots[0].links[0])):
+                transform = recordings.TransformStamped(child_frame_id=child)
+                transform.header.frame_id, transform.transform.rotation.w = parent, 1.0
+                target.write("/tf", recordings.TFMessage([transform]), bag.times[0])
+        recording, data = page_of(self.path)
+        self.assertEqual([], data["bodies"])
+        self.assertEqual(len(bag.robots), sum("it is not drawn" in note for note in recording.notes))
+
     def test_damaged_bags_are_one_line(self):
         rng = np.random.default_rng(SEED + 6)
         bag = RandomBag(rng, 30)

@@ -9,6 +9,7 @@ CONTACTS = "frictional_contact_sim/ContactArray"
 HOW = "roslaunch frictional_contact_sim simulate.launch ... bag:=FILE.bag (or rosbag record -a)"
 KINDS = {1: "box", 2: "sphere", 3: "cylinder", 10: "mesh"}  # of visualization_msgs/Marker
 TRIANGLES = 11
+DEEPEST = 200  # frames above one another in tf
 
 
 def open_bag(path):
@@ -50,9 +51,8 @@ class Samples:
 
 
 class BagReader:
-    def __init__(self, path, node, robots, progress):
-        self.path, self.robots, self.progress = path, robots, progress
-        self.bag = open_bag(path)
+    def __init__(self, path, bag, node, robots, progress):
+        self.path, self.bag, self.robots, self.progress = path, bag, robots, progress
         self.types = {topic: info.msg_type for topic, info in self.bag.get_type_and_topic_info().topics.items()}
         self.node = node or self.find_node()
         self.contacts, self.frame_times = ContactRows(), []
@@ -63,11 +63,15 @@ class BagReader:
         self.bodies, self.ground, self.notes = {}, None, []
 
     def find_node(self):
-        found = sorted({topic[:-len("/contacts")] for topic, kind in self.types.items() if kind == CONTACTS and topic.endswith("/contacts")} or
-                       {topic[:-len("/step_report")] for topic, kind in self.types.items() if kind == "frictional_contact_sim/StepReport"})
-        if len(found) > 1:
-            raise InputError(f"{self.path}: found contacts of {', '.join(found)}, expected --node with one of them")
-        return found[0] if found else "/simulator_node"
+        """The one with contacts, else with reports; NODE/contacts/LINK are of the same type and of the same node."""
+        for name, kind in (("/contacts", CONTACTS), ("/step_report", "frictional_contact_sim/StepReport")):
+            found = {topic[:-len(name)] for topic, found_kind in self.types.items() if found_kind == kind and topic.endswith(name)}
+            found = sorted(node for node in found if not any(node.startswith(other + "/contacts") for other in found))
+            if len(found) > 1:
+                raise InputError(f"{self.path}: found contacts of {', '.join(found)}, expected --node with one of them")
+            if found:
+                return found[0]
+        return "/simulator_node"
 
     def handlers(self):
         """{topic: function of a message}"""
@@ -169,14 +173,16 @@ class BagReader:
                 self.ground = marker.pose.position.z
 
     # ------------------------------------------------------------------------------------------------------ together
-    def world_track(self, frame, depth=0):
-        """Of a tf frame, its chain of parents followed to one that has none; None where tf does not have it."""
-        if frame not in self.transforms or depth > 1000:
+    def world_track(self, frame, below=()):
+        """Of a tf frame, its chain of parents followed to one that has none; None where tf does not have it, or has a circle."""
+        if frame not in self.transforms or frame in below or len(below) > DEEPEST:
             return None
         own = self.transforms.track(frame, frame in self.static)
-        above = self.world_track(self.parents[frame], depth + 1)
-        if above is None:
+        if self.parents[frame] not in self.transforms:
             return own
+        above = self.world_track(self.parents[frame], (*below, frame))
+        if above is None:
+            return None
         from .poses import sample  # poses knows tracks; here only to join two of them
         base = own if above.fixed and not own.fixed else above
         return Track(base.times, rotation.compose(sample(Track(above.times, above.values, True), base.times),
@@ -235,10 +241,10 @@ def read_bag(path, node, robots, progress):
     """@param node name of the simulator_node, empty: the only one. @param robots {body or "": (URDF document, folder)}
     @return Recording and the lines that say which topics are missing"""
     try:
-        reader = BagReader(path, node, robots, progress)
-        with reader.bag:
+        with open_bag(path) as bag:
+            reader = BagReader(path, bag, node, robots, progress)
             return reader.read(), reader.missing("contacts", "step_report")
     except InputError:
         raise
     except Exception as error:  # what rosbag, genpy, struct, zlib, bz2, lz4 raise where a bag is damaged: any kind
-        raise InputError(f"{path}: the bag is damaged: {' '.join(str(error).split()) or type(error).__name__}") from None
+        raise InputError(f"{path}: the bag cannot be read: {' '.join(str(error).split()) or type(error).__name__}") from None
