@@ -42,11 +42,12 @@ if (wanted.click) { // in the middle of the first plot
   result.clicked = [before, await page.evaluate(() => window.replay.time)];
 }
 if (wanted.follow !== undefined) await page.select("#follow", String(wanted.follow));
-if (wanted.numbers) await page.evaluate(() => { window.replay.forces.numbers = true; });
+if (wanted.numbers) await page.evaluate(() => { window.replay.forces.numbers = true; window.replay.dirty = true; });
 if (wanted.view) await page.evaluate((view) => {
   const { camera, controls } = window.replay;
   controls.target.set(...view.target);
   camera.position.set(...view.position);
+  window.replay.dirty = true;
 }, wanted.view);
 if (wanted.play) {
   await page.evaluate(() => { window.replay.seek(window.replay.times[0]); window.replay.work = []; window.replay.play(true); });
@@ -81,6 +82,10 @@ if (wanted.select) { // the arrow of the largest force, as a click on it chooses
   });
 }
 await settle();
+// A page that stands still is not drawn again.
+const drawn = await page.evaluate(() => window.replay.renderer?.info.render.frame ?? 0);
+await page.evaluate(() => new Promise((done) => setTimeout(done, 500)));
+result.drawn_at_rest = (await page.evaluate(() => window.replay.renderer?.info.render.frame ?? 0)) - drawn;
 result.contact = await page.$eval(".contact", (table) => (table.hidden ? "" : table.innerText));
 result.bodies = await page.$$eval("#follow option", (options) => options.map((option) => option.textContent));
 result.notes = await page.$$eval(".notes p", (notes) => notes.map((note) => note.textContent));

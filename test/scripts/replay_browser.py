@@ -77,6 +77,7 @@ class BrowserTest(unittest.TestCase):
         self.assertIn("|r_T| / (mu r_N)", result["contact"])
         self.assertGreater(result["play"]["pictures"], 3)
         self.assertGreater(result["triangles"], 1000)
+        self.assertEqual(0, result["drawn_at_rest"])
 
     def test_hostile_names_stay_text(self):
         rng = np.random.default_rng(SEED)

@@ -101,7 +101,10 @@ export class Panel {
         view.factor = 10 ** value;
         this.showLegend();
       }))),
-      labelled("bodies ", range(0.1, 1, 0.05, 1, (value) => replay.bodies.setOpacity(value))));
+      labelled("bodies ", range(0.1, 1, 0.05, 1, (value) => {
+        replay.bodies.setOpacity(value);
+        again();
+      })));
     follow.id = "follow";
   }
 

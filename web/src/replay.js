@@ -66,6 +66,7 @@ class Replay {
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.01, 1000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => (this.redraw = true));
     this.forces = new Forces(this.contacts, this.size, labels);
     this.scene.add(this.bodies.group, this.forces.group);
     this.lookAtAll();
@@ -85,6 +86,7 @@ class Replay {
     this.camera.near = radius * 1e-3;
     this.camera.far = radius * 400;
     this.camera.updateProjectionMatrix();
+    this.redraw = true;
     this.viewed = { center, radius };
   }
 
@@ -137,13 +139,14 @@ class Replay {
       if (this.time >= this.times[this.times.length - 1]) this.play(false);
     }
     if (this.dirty) this.showState(now);
-    if (this.renderer) this.draw();
+    if (this.renderer && (this.redraw || this.resized())) this.draw();
     this.work.push(performance.now() - begin);
     if (this.work.length > 600) this.work.shift();
   }
 
   showState(now) {
     this.dirty = false;
+    this.redraw = true;
     const before = this.followed >= 0 ? this.bodies.center(this.followed) : null;
     this.bodies.show(this.exact);
     this.forces?.show(this.frame);
@@ -161,20 +164,26 @@ class Replay {
     }
   }
 
+  // Takes over the size of the view where it has changed.
+  resized() {
+    const { clientWidth: width, clientHeight: height } = this.panel.view, ratio = Math.min(window.devicePixelRatio, 2);
+    const now = `${width} ${height} ${ratio}`;
+    if (this.drawn === now || width < 1 || height < 1) return false;
+    this.drawn = now;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    return true;
+  }
+
+  // Only where something has changed: a page that stands still costs nothing.
   draw() {
-    const { canvas } = this.panel, width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
-    const ratio = Math.min(window.devicePixelRatio, 2);
-    if (width < 1 || height < 1) return;
-    if (this.drawn !== `${width} ${height} ${ratio}`) {
-      this.drawn = `${width} ${height} ${ratio}`;
-      this.renderer.setPixelRatio(ratio);
-      this.renderer.setSize(width, height, false);
-      this.camera.aspect = width / height;
-      this.camera.updateProjectionMatrix();
-    }
+    this.resized();
     this.controls.update();
+    this.redraw = false;
     this.renderer.render(this.scene, this.camera);
-    this.forces.placeLabels(this.camera, width, height);
+    this.forces.placeLabels(this.camera, this.panel.view.clientWidth, this.panel.view.clientHeight);
   }
 
   follow(thing) {
@@ -184,6 +193,7 @@ class Replay {
     const move = center.sub(this.controls.target);
     this.camera.position.add(move);
     this.controls.target.add(move);
+    this.redraw = true;
   }
 
   pick(event) {
