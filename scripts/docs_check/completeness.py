@@ -12,13 +12,13 @@ SOURCES = [
     ('key of a scenario', 'src/simulation/scenario*.cpp', KEY.findall, 20),
     ('key of a body', 'src/simulation/body_keys.cpp', KEY.findall, 25),
 ]
-DOCUMENTED = ['run_scenario', 'fclib_solve', 'compare_solvers', 'rolling_contact', 'simulator_node', 'record_bag']  # their options
+DOCUMENTED = ['run_scenario', 'fclib_solve', 'compare_solvers', 'rolling_contact', 'simulator_node', 'record_bag', 'plot_bag', 'replay']  # their options
 
 
 def check(repo):
     page = repo.text(PAGE)
     found = [(PAGE, 1, f'no word of the program {path.stem}') for path in repo.paths()
-             if str(path.parent) == 'src/tools' and path.suffix == '.cpp' and not names(page, path.stem)]
+             if str(path.parent) == 'src/tools' and path.suffix in ('.cpp', '') and not names(page, path.stem)]
     for kind, pattern, extract, least in SOURCES:
         offered = {name for path in sorted(repo.root.glob(pattern)) for name in extract(path.read_text())}
         if len(offered) < least:

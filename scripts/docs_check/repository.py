@@ -78,6 +78,7 @@ class Repository:
         """Names of the executables of a build with tests and benchmarks (CMakeLists.txt makes them from these files)."""
         names = {path.stem for path in self.paths() if path.suffix == '.cpp' and
                  (path.parts[0] == 'examples' or str(path.parent) in ('src/tools', 'test/state_hashes', 'test/robustness'))}
+        names |= {path.name for path in self.paths() if str(path.parent) == 'src/tools' and not path.suffix}  # in Python
         names |= {f'test_{path.parts[1]}' for path in self.paths() if path.parts[0] == 'test' and path.suffix == '.cpp'}
         return names | {f'benchmark_{path.stem}' for path in self.paths()
                         if str(path.parent) == 'benchmark' and path.suffix == '.cpp'}

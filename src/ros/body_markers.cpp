@@ -1,15 +1,14 @@
 #include "frictional_contact_sim/ros/body_markers.h"
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/model/visual_shapes.h"
 #include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/markers.h"
+#include "frictional_contact_sim/simulation/body_document.h"
 
 namespace frictional_contact_sim
 {
@@ -28,14 +27,6 @@ std_msgs::ColorRGBA paletteColor(int body)
   constexpr int COUNT = sizeof COLORS / sizeof COLORS[0];
   const double* rgb = COLORS[body % COUNT];
   return makeColor(rgb[0], rgb[1], rgb[2], OPACITY);
-}
-
-std::string fileText(const std::string& path)
-{
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 bool fileExists(const std::string& uri)
@@ -101,12 +92,9 @@ void BodyMarkers::add(int body, int link, const Geometry& geometry, const Eigen:
 void BodyMarkers::loadBody(int body)
 {
   const MultibodyModel& model = simulator_.model(body);
-  const BodySpec& spec = simulator_.scenario().bodies[body];
-  const std::string xml = spec.urdf_xml.empty() ? fileText(spec.urdf_path) : spec.urdf_xml;
-  std::error_code ignored;
-  const std::string folder = (std::filesystem::current_path(ignored) / spec.urdf_path).parent_path().string();
+  const BodyDocument document = bodyDocument(simulator_.scenario().bodies[body]);
   std::set<int> drawn;  // frames
-  for (const VisualShape& shape : readVisualShapes(xml, folder))
+  for (const VisualShape& shape : readVisualShapes(document.urdf, document.folder))
   {
     const int frame = model.findFrame(shape.link);
     const auto* mesh = std::get_if<Mesh>(&shape.geometry);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/ros/parameter_error.h"
+#include "frictional_contact_sim/simulation/body_document.h"
 
 namespace frictional_contact_sim
 {
@@ -67,6 +69,10 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   for (const ros::Publisher& publisher : body_joints_.publishers())
     data_topics_.insert(publisher.getTopic());
   markers_publisher_ = advertise(private_node, "markers", LATEST_QUEUE, &StepPublisher::allMarkers);
+  // Read from the files for each new subscriber; after a spawn or delete roscpp announces the old ones anew.
+  bodies_publisher_ = private_node.advertise<Bodies>("bodies", LATEST_QUEUE,
+                                                     [this](const ros::SingleSubscriberPublisher& subscriber)
+                                                     { subscriber.publish(bodies()); });
   if (publish_clock_)
     clock_publisher_ = node.advertise<rosgraph_msgs::Clock>("/clock", LATEST_QUEUE);
   tf_publisher_ = advertise(node, "/tf", TRANSFORM_QUEUE, &StepPublisher::transforms);
@@ -134,7 +140,8 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
   std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_, &markers_publisher_, &tf_publisher_};
+                                                   &step_report_publisher_,  &markers_publisher_,
+                                                   &tf_publisher_,           &bodies_publisher_};
   if (publish_clock_)
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)
@@ -191,6 +198,23 @@ const ContactArray& StepPublisher::contacts()
 {
   fillContacts(simulator_, names_, stamp_, contacts_);
   return contacts_;
+}
+
+Bodies StepPublisher::bodies() const
+{
+  Bodies message;
+  message.header.frame_id = WORLD_FRAME;
+  message.header.stamp = stamp_;
+  const Scenario& scenario = simulator_.scenario();
+  message.ground_height = scenario.ground ? scenario.ground->height : std::numeric_limits<double>::quiet_NaN();
+  for (const BodySpec& body : scenario.bodies)
+  {
+    const BodyDocument document = bodyDocument(body);
+    message.names.push_back(body.name);
+    message.urdfs.push_back(document.urdf);
+    message.folders.push_back(document.folder);
+  }
+  return message;
 }
 
 const nav_msgs::Odometry& StepPublisher::odometry(int body)

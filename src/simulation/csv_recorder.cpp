@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "frictional_contact_sim/simulation/body_document.h"
 #include "frictional_contact_sim/simulation/root_motion.h"
 
 namespace frictional_contact_sim
@@ -12,6 +13,15 @@ namespace
 void write(std::ofstream& file, const Eigen::Vector3d& vector)
 {
   file << ',' << vector.x() << ',' << vector.y() << ',' << vector.z();
+}
+
+/** As RFC 4180 has it: a path may hold anything. */
+std::string quoted(const std::string& text)
+{
+  std::string result = "\"";
+  for (const char letter : text)
+    result += letter == '"' ? "\"\"" : std::string(1, letter);
+  return result + "\"";
 }
 }  // namespace
 
@@ -42,8 +52,33 @@ CsvRecorder::CsvRecorder(const std::string& folder) : folder_(folder)
                 "balance_error");
 }
 
+void CsvRecorder::recordBodies(const Simulator& simulator) const
+{
+  std::ofstream bodies = open("bodies.csv", "body,urdf,folder,height");
+  std::error_code error;
+  std::filesystem::create_directories(folder_ + "/bodies", error);
+  if (error)
+    throw std::runtime_error(folder_ + "/bodies: cannot be created: " + error.message());
+  if (const std::optional<GroundSpec>& ground = simulator.scenario().ground)
+    bodies << "ground,,," << ground->height << '\n';
+  for (const BodySpec& body : simulator.scenario().bodies)
+  {
+    const BodyDocument document = bodyDocument(body);
+    const std::string name = "bodies/" + body.name + ".urdf";
+    std::ofstream urdf(folder_ + "/" + name);
+    urdf << document.urdf;
+    urdf.close();
+    if (!urdf)
+      throw std::runtime_error(folder_ + "/" + name + ": cannot be written, is the disk full?");
+    bodies << body.name << ',' << name << ',' << quoted(document.folder) << ",\n";
+  }
+}
+
 void CsvRecorder::record(const Simulator& simulator, bool with_step)
 {
+  if (!knows_bodies_)
+    recordBodies(simulator);
+  knows_bodies_ = true;
   const double time = simulator.time();
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {

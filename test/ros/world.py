@@ -11,7 +11,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
 import node_runner
-from frictional_contact_sim.msg import ContactArray
+from frictional_contact_sim.msg import Bodies, ContactArray
 from frictional_contact_sim.srv import Attach, Delete, Detach, Spawn, Step
 
 NODE = node_runner.NAME
@@ -83,9 +83,15 @@ class WorldTest(unittest.TestCase):
         records = []
         listener = rospy.Subscriber("/joint_states", JointState, records.append)
         node_runner.wait_until(lambda: len(records) == 1)
+        worlds = []  # for those who draw or record it
+        rospy.Subscriber(NODE + "/bodies", Bodies, worlds.append)
+        self.assertTrue(node_runner.wait_until(lambda: len(worlds) == 1))
+        self.assertEqual(([CRANE], [""], 0.0), (worlds[0].urdfs, worlds[0].folders, worlds[0].ground_height))
         answer = call("spawn", Spawn, name="ball", urdf=BALL, pose=pose(1, 0, 1.5), twist=Twist(Vector3(0, 0, 0), Vector3()))
         self.assertTrue(answer.success, answer.message)
         self.assertIn(NODE + "/ground_truth/ball/odom", topics())
+        self.assertTrue(node_runner.wait_until(lambda: len(worlds) == 2))
+        self.assertEqual((worlds[0].names + ["ball"], [CRANE, BALL]), (worlds[1].names, worlds[1].urdfs))
         self.assertEqual({"ball/core"}, {part.child_frame_id for part in now("/tf", TFMessage).transforms})
         step(100)
         self.assertAlmostEqual(1.5 - 0.5 * GRAVITY * 0.01, height("ball/"), delta=1e-6)
@@ -126,6 +132,8 @@ class WorldTest(unittest.TestCase):
         node_runner.wait_until(lambda: len(records) == 103)
         self.assertTrue(call("delete", Delete, "ball").success)
         self.assertNotIn(NODE + "/ground_truth/ball/odom", topics())
+        self.assertTrue(node_runner.wait_until(lambda: len(worlds) == 3))
+        self.assertEqual(worlds[0].names, worlds[2].names)
         step(10)
         self.assertTrue(node_runner.wait_until(lambda: len(records) == 114), len(records))
         self.assertEqual({("hoist",)}, {tuple(r.name) for r in records[102:]})

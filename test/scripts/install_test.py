@@ -44,6 +44,18 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(0, done.returncode, done.stderr)
         self.assertIn('"failed_steps":0', done.stdout.replace(' ', ''))
 
+    def test_programs_in_python(self):
+        done = self.run_there('rosrun frictional_contact_sim run_scenario resting_box --duration 0.1 --output run --json >/dev/null && '
+                              'rosrun frictional_contact_sim plot_bag run --output plots && rosrun frictional_contact_sim replay --version')
+        self.assertEqual(0, done.returncode, done.stderr)
+        self.assertEqual(6, done.stdout.count('.png\n'))
+        # With the bundle of scripts/install_replay a page, else one line that names it.
+        done = self.run_there('rosrun frictional_contact_sim replay run --output page.html')
+        if done.returncode == 0:
+            self.assertIn('101 frames', done.stdout)
+        else:
+            self.assertRegex(done.stderr, r'^replay: [^\n]*scripts/install_replay[^\n]*\n$')
+
     def test_roslaunch_ends_without_a_red_line(self):
         done = self.run_there('roslaunch -p {port} frictional_contact_sim simulate.launch robot:=quadruped num_steps:=200 '
                               'real_time_factor:=0')

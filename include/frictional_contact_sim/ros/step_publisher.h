@@ -3,6 +3,7 @@
  * @file step_publisher.h
  * @brief All topics of one step: one stamp, and no work for a topic that nobody listens to.
  */
+#include <frictional_contact_sim/Bodies.h>
 #include <ros/node_handle.h>
 #include <rosgraph_msgs/Clock.h>
 #include <tf2_msgs/TFMessage.h>
@@ -70,6 +71,7 @@ private:
   void advertiseOdometry(ros::NodeHandle& private_node, int body, const std::string& prefix);
   const sensor_msgs::JointState& jointStates();
   const ContactArray& contacts();
+  Bodies bodies() const;
   const nav_msgs::Odometry& odometry(int body);
   const tf2_msgs::TFMessage& transforms();
   void publishStaticTransforms();
@@ -102,6 +104,7 @@ private:
   ros::Publisher step_report_publisher_;
   std::vector<ros::Publisher> odometry_publishers_;  // by body
   ros::Publisher markers_publisher_;
+  ros::Publisher bodies_publisher_;
   ros::Publisher clock_publisher_;
   ros::Publisher tf_publisher_;
   std::optional<TransformPublisher> tf_;

@@ -1,7 +1,8 @@
 #pragma once
 /**
  * @file csv_recorder.h
- * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder (docs/interfaces.md).
+ * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder, and what its bodies look
+ * like: bodies.csv and copies of their URDFs (docs/interfaces.md).
  *
  * Contact columns: force is impulse / dt in world axes, on body_a [N]; velocity is of a relative to b [m/s].
  */
@@ -24,11 +25,13 @@ public:
   void close();
 
 private:
+  void recordBodies(const Simulator& simulator) const;
   void recordContacts(const Simulator& simulator);
   void recordReport(const StepSummary& report);
   std::ofstream open(const std::string& name, const char* columns) const;
 
   std::string folder_;
+  bool knows_bodies_ = false;
   std::ofstream states_;
   std::ofstream joints_;
   std::ofstream contacts_;
