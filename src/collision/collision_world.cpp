@@ -224,6 +224,17 @@ void CollisionWorld::disablePair(int body, const std::string& link_1, const std:
   insert(impl_->edit().bodies[body].disabled, frames);
 }
 
+void CollisionWorld::disableJoined(std::array<int, 2> one, std::array<int, 2> other)
+{
+  if (other < one)
+    std::swap(one, other);
+  const std::array<int, 4> pair{one[0], one[1], other[0], other[1]};
+  std::vector<std::array<int, 4>>& joined = impl_->edit().joined;
+  const auto place = std::lower_bound(joined.begin(), joined.end(), pair);
+  if (place == joined.end() || *place != pair)
+    joined.insert(place, pair);
+}
+
 void CollisionWorld::disableSelfCollision(int body)
 {
   static_cast<void>(impl_->body(body));

@@ -23,6 +23,15 @@ bool ShapeModel::mayCollide(int i, int k) const
     const ShapeInfo& moving = first.body < 0 ? second : first;
     return !contains(bodies[moving.body].disabled_static, {moving.frame, first.body < 0 ? i : k});
   }
+  if (!joined.empty())
+  {
+    std::array<int, 2> one{first.body, first.link};
+    std::array<int, 2> other{second.body, second.link};
+    if (other < one)
+      std::swap(one, other);
+    if (std::binary_search(joined.begin(), joined.end(), std::array<int, 4>{one[0], one[1], other[0], other[1]}))
+      return false;
+  }
   if (first.body != second.body)
     return true;
   const CollidingBody& body = bodies[first.body];
@@ -61,6 +70,12 @@ void ShapeModel::eraseBody(int body)
   bodies.erase(bodies.begin() + body);
   for (ShapeInfo& info : infos)
     info.body -= info.body > body ? 1 : 0;
+  joined.erase(std::remove_if(joined.begin(), joined.end(),
+                              [body](const std::array<int, 4>& pair) { return pair[0] == body || pair[2] == body; }),
+               joined.end());
+  for (std::array<int, 4>& pair : joined)
+    for (const int place : {0, 2})
+      pair[static_cast<size_t>(place)] -= pair[static_cast<size_t>(place)] > body ? 1 : 0;
 }
 
 }  // namespace frictional_contact_sim

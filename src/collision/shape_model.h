@@ -38,6 +38,7 @@ struct ShapeModel : PairRule
   std::vector<Instance> instances;
   std::vector<ShapeInfo> infos;
   std::vector<CollidingBody> bodies;
+  std::vector<std::array<int, 4>> joined;  ///< body, link, body, link of loops; the lower first; sorted
   size_t most_vertices = 0;
 
   bool mayCollide(int i, int k) const override;

@@ -170,6 +170,9 @@ Body::Body(const BodyModel& body_model, BodyState& body_state)
   , next_bias(v_middle)
   , change(v_middle)
   , implicit(v_middle)
+  , base(model.base_motion.velocity)
+  , base_turn(instantTurn(base.angular))
+  , surface_turns(model.surfaces.size(), Eigen::Matrix3d::Zero())
 {
 }
 
@@ -179,25 +182,64 @@ Eigen::Isometry3d basePose(const Body& body, double dt)
   Eigen::Isometry3d pose = body.state.base_pose;
   if (!motion.active)
     return pose;
-  pose.translation() = body.state.base_pose.translation() + dt * motion.linear;
-  const double rate = motion.angular.norm();
+  if (motion.isProgram())
+    return programPose(motion, body.base_time + dt);
+  pose.translation() = body.state.base_pose.translation() + dt * motion.velocity.linear;
+  const double rate = motion.velocity.angular.norm();
   if (rate > 0.0)
-    pose.linear() = Eigen::AngleAxisd(dt * rate, motion.angular / rate) * body.state.base_pose.linear();
+    pose.linear() = Eigen::AngleAxisd(dt * rate, motion.velocity.angular / rate) * body.state.base_pose.linear();
   return pose;
+}
+
+void setBaseTime(Body& body, double time, double dt, bool in_step)
+{
+  const BaseMotion& motion = body.model.base_motion;
+  body.base_time = time;
+  const auto turn = [&](const Eigen::Vector3d& angular)
+  { return in_step ? chordTurn(angular, dt) : instantTurn(angular); };
+  for (size_t i = 0; i < body.model.surfaces.size(); ++i)
+    body.surface_turns[i] = turn(body.model.surfaces[i].angular);
+  if (!motion.active)
+    return;
+  body.base_turn = turn(motion.velocity.angular);
+  if (!motion.isProgram())
+    return;
+  const auto mean = [&](double center)
+  {
+    const Eigen::Isometry3d from = programPose(motion, center - 0.5 * dt);
+    const Eigen::Isometry3d to = programPose(motion, center + 0.5 * dt);
+    return BaseVelocity{(to.translation() - from.translation()) / dt, rotationBetween(from.linear(), to.linear()) / dt};
+  };
+  // Rows speak of the next midpoint: the chord from this one to that one is what they need, exactly.
+  const BaseVelocity start = mean(time);
+  body.base = in_step ? mean(time + dt) : start;
+  body.base_turn = turn(body.base.angular);
+  body.base_rate = {(body.base.linear - start.linear) / dt, (body.base.angular - start.angular) / dt};
+}
+
+double springEnergy(const Body& body)
+{
+  double energy = 0.0;
+  for (const JointSpring& spring : body.model.springs)
+  {
+    const double stretch =
+        body.state.q[body.model.tree.joints[static_cast<size_t>(spring.joint)].q_index] - spring.rest;
+    energy += 0.5 * spring.stiffness * stretch * stretch;
+  }
+  return energy;
 }
 
 void updateEnd(Body& body)
 {
-  const BaseMotion& motion = body.model.base_motion;
   body.end.base_pose = body.state.base_pose;
   forwardKinematics(body.model.tree, body.state.q, body.end);
   forwardVelocities(body.model.tree, body.state.v, body.end);
   // A moving base carries all links along; `reference` is its origin.
-  if (motion.active)
+  if (body.model.base_motion.active)
     for (Vector6d& velocity : body.end.link_velocity)
     {
-      velocity.head<3>() += motion.linear;
-      velocity.tail<3>() += motion.angular;
+      velocity.head<3>() += body.base.linear;
+      velocity.tail<3>() += body.base.angular;
     }
 }
 

@@ -66,7 +66,36 @@ Eigen::Vector3d baseVelocity(const std::vector<Body>& bodies, const ShapeInfo& s
     return Eigen::Vector3d::Zero();
   const Body& body = bodies[shape.body];
   const Eigen::Vector3d arm = position - body.middle.link_pose.front().translation();
-  return body.model.base_motion.linear + body.model.base_motion.angular.cross(arm);
+  return body.base.linear + body.base_turn * arm;
+}
+
+/** Of a link whose surface moves while it stays. */
+Eigen::Vector3d surfaceVelocity(const std::vector<Body>& bodies, const ShapeInfo& shape,
+                                const Eigen::Vector3d& position)
+{
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (shape.body < 0 || bodies[shape.body].model.surfaces.empty())
+    return velocity;
+  const Body& body = bodies[shape.body];
+  for (size_t i = 0; i < body.model.surfaces.size(); ++i)
+    if (const SurfaceMotion& surface = body.model.surfaces[i]; surface.frame == shape.frame)
+    {
+      const Eigen::Isometry3d pose = framePose(body.model.tree, body.middle, surface.frame);
+      const Eigen::Vector3d arm = pose.linear().transpose() * (position - pose.translation());
+      velocity += pose.linear() * (surface.linear + body.surface_turns[i] * arm);
+    }
+  return velocity;
+}
+
+/** What prescribed motions alone give to a point; a surface moves within itself. */
+Eigen::Vector3d prescribedVelocity(const std::vector<Body>& bodies, const ShapeInfo& shape_a, const ShapeInfo& shape_b,
+                                   const ContactPoint& point)
+{
+  const Eigen::Vector3d base =
+      baseVelocity(bodies, shape_a, point.position) - baseVelocity(bodies, shape_b, point.position);
+  const Eigen::Vector3d surface =
+      surfaceVelocity(bodies, shape_a, point.position) - surfaceVelocity(bodies, shape_b, point.position);
+  return surface.isZero(0.0) ? base : Eigen::Vector3d(base + surface - point.normal.dot(surface) * point.normal);
 }
 
 ContactRows::ContactRows(const std::vector<Body>& bodies, const CollisionWorld& world, const PairTable& pairs,
@@ -154,8 +183,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   contact.row = sink.rows();
   contact.law = sink.laws();
   tangentFrame(point.normal, contact.tangent_1, contact.tangent_2);
-  const Eigen::Vector3d relative_base =
-      baseVelocity(bodies_, shape_a, point.position) - baseVelocity(bodies_, shape_b, point.position);
+  const Eigen::Vector3d relative_base = prescribedVelocity(bodies_, shape_a, shape_b, point);
   const Eigen::Vector3d* axes[3] = {&point.normal, &contact.tangent_1, &contact.tangent_2};
   const Eigen::Vector3d velocity = relativeVelocity(*context.v_old, relative_base);
 
@@ -292,8 +320,7 @@ Eigen::Vector3d ContactRows::velocityOf(const ContactRow& row, const ContactPoin
   const ShapeInfo& shape_b = world_.shape(point.shape_b);
   collectColumns(shape_a, point.position, 1.0, columns_a_);
   collectColumns(shape_b, point.position, -1.0, columns_b_);
-  const Eigen::Vector3d velocity = relativeVelocity(
-      solution.v, baseVelocity(bodies_, shape_a, point.position) - baseVelocity(bodies_, shape_b, point.position));
+  const Eigen::Vector3d velocity = relativeVelocity(solution.v, prescribedVelocity(bodies_, shape_a, shape_b, point));
   return {solution.u[row.row], row.tangent_1.dot(velocity), row.tangent_2.dot(velocity)};
 }
 

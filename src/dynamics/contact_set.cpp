@@ -69,14 +69,13 @@ double ContactSet::sizeOf(const ContactPoint& point) const
 /** Of the points of a prescribed base [m/s]. */
 double ContactSet::baseSpeed(const Body& body)
 {
-  const BaseMotion& motion = body.model.base_motion;
-  if (!motion.active)
+  if (!body.model.base_motion.active)
     return 0.0;
   double reach = 0.0;
   const Eigen::Vector3d origin = body.middle.link_pose.front().translation();
   for (size_t link = 0; link < body.middle.link_pose.size(); ++link)
     reach = std::max(reach, (body.middle.link_pose[link].translation() - origin).norm() + body.model.extents[link]);
-  return motion.linear.norm() + motion.angular.norm() * reach;
+  return body.base.linear.norm() + body.base.angular.norm() * reach;
 }
 
 const Eigen::VectorXd& ContactSet::velocities(Motion motion, int body) const

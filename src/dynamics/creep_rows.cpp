@@ -61,8 +61,7 @@ Eigen::Vector3d CreepRows::addRollingSide(const ContactPoint& point, const Shape
   }
   if (!body.model.base_motion.active)
     return Eigen::Vector3d::Zero();
-  return (weight - 0.5) * baseVelocity(bodies_, shape, point.position) -
-         weight * (spin * body.model.base_motion.angular);
+  return (weight - 0.5) * baseVelocity(bodies_, shape, point.position) - weight * (spin * body.base.angular);
 }
 
 void CreepRows::bend(const StepContext& context, const CreepTable& curve, const Eigen::Vector3d& velocity,

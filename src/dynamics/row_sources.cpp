@@ -1,15 +1,17 @@
 #include "frictional_contact_sim/dynamics/row_sources.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
+#include "frictional_contact_sim/dynamics/closure_rows.h"
 #include "frictional_contact_sim/dynamics/contact_rows.h"
 #include "frictional_contact_sim/dynamics/creep_rows.h"
 #include "frictional_contact_sim/dynamics/dry_friction_rows.h"
+#include "frictional_contact_sim/dynamics/joint_springs.h"
 #include "frictional_contact_sim/dynamics/limit_rows.h"
 #include "frictional_contact_sim/dynamics/mimic_rows.h"
 #include "frictional_contact_sim/dynamics/servo_rows.h"
-#include "frictional_contact_sim/dynamics/weld_rows.h"
 
 namespace frictional_contact_sim
 {
@@ -50,8 +52,11 @@ std::vector<std::unique_ptr<RowSource>> makeRowSources(std::vector<Body>& bodies
   sources.push_back(std::make_unique<LimitRows>(bodies, memory()));
   sources.push_back(std::make_unique<DryFrictionRows>(bodies, memory()));
   sources.push_back(std::make_unique<ServoRows>(bodies, memory()));
+  if (std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return !body.model.springs.empty(); }))
+    sources.push_back(std::make_unique<JointSprings>(bodies));
   sources.push_back(std::make_unique<MimicRows>(bodies, memory()));
-  sources.push_back(std::make_unique<WeldRows>(bodies, state.welds));
+  sources.push_back(std::make_unique<ClosureRows>("loops", bodies, state.loops));
+  sources.push_back(std::make_unique<ClosureRows>("welds", bodies, state.welds));
   // Last: tangents are looked at once everything else of the step is settled.
   if (creep)
     sources.push_back(std::move(creep));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 
@@ -10,6 +11,7 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double BOUNDED_FRACTION = 0.9;  ///< of its effort limit: from here on a servo is solved as a row
+constexpr double SPEED_TOLERANCE = 1e-9;  ///< relative overshoot of a velocity limit that is round-off
 constexpr double EFFORT_TOLERANCE = 1e-9;  ///< relative overshoot of an effort limit that is round-off
 }  // namespace
 
@@ -59,12 +61,32 @@ double ServoRows::effort(const Servo& servo, double velocity, double dt)
   return (servo.impulse.offset - servo.impulse.stiffness * velocity) / dt;
 }
 
+/** [rad/s] or [m/s]; a URDF's velocity="0" means that nobody filled it in. */
+double ServoRows::velocityLimit(const Servo& servo) const
+{
+  const double limit = bodies_[servo.body].model.tree.joints[servo.joint].limit.velocity;
+  return limit > 0.0 ? limit : std::numeric_limits<double>::infinity();
+}
+
+/** Whether a drive pushes its joint beyond its velocity limit. @param most then, see Servo */
+bool ServoRows::limitSpeed(const Servo& servo, const Body& body, double velocity, double dt, double& most) const
+{
+  const double limit = velocityLimit(servo);
+  if (!(std::abs(velocity) > limit * (1.0 + SPEED_TOLERANCE)))
+    return false;
+  const double sign = velocity > 0.0 ? 1.0 : -1.0;
+  const double wanted = servo.impulse.offset - servo.impulse.stiffness * sign * limit;
+  most = sign * std::clamp(sign * wanted, 0.0, dt * body.state.drives[servo.joint].effort_limit);
+  return most != 0.0;
+}
+
 void ServoRows::clear()
 {
   for (Servo& servo : servos_)
   {
     servo.impulse = {};
     servo.bounded = false;
+    servo.most = 0.0;
   }
 }
 
@@ -77,6 +99,7 @@ void ServoRows::begin(const StepContext& context)
     const int q_index = body.model.tree.joints[servo.joint].q_index;
     servo.impulse = servoImpulse(commandAt(body, servo.joint, context.middle), body.state.q[q_index],
                                  body.state.v[servo.v_index], context.dt);
+    servo.most = 0.0;
     servo.bounded = servo.impulse.stiffness > 0.0 && std::isfinite(drive.effort_limit) &&
                     std::abs(drive.effort) >= BOUNDED_FRACTION * drive.effort_limit;
   }
@@ -109,9 +132,19 @@ void ServoRows::addGravity(const StepContext& context, int body)
 void ServoRows::addJointRows(const StepContext& context, int body, int joint, RowSink& sink)
 {
   const int index = servo_of_[body][joint];
-  if (context.impact || index < 0 || !servos_[index].bounded)
+  if (context.impact || index < 0 || (!servos_[index].bounded && servos_[index].most == 0.0))
     return;
   Servo& servo = servos_[index];
+  if (servo.most != 0.0)
+  {
+    servo.row = sink.rows();
+    sink.push(bodies_[body].v_offset + servo.v_index, 1.0);
+    sink.endRow(-std::copysign(velocityLimit(servo), servo.most),
+                {WorkAccount::ACTUATORS, 0.0, memory_.at(body, joint)});
+    sink.endLaw({LawType::DRY_FRICTION, 0.5 * std::abs(servo.most)}, jointUnit(bodies_[body], joint));
+    countAsForce(context, bodies_[body], servo);
+    return;
+  }
   servo.row = sink.rows();
   sink.push(bodies_[body].v_offset + servo.v_index, 1.0);
   sink.push(sink.addAuxiliary(servo.impulse.stiffness), -1.0);
@@ -140,7 +173,9 @@ void ServoRows::addMomentum(const StepContext&, int body, VectorOut momentum)
   for (int k = first_[body]; k < first_[body + 1]; ++k)
   {
     const Servo& servo = servos_[k];
-    if (servo.bounded)
+    if (servo.most != 0.0)
+      momentum[servo.v_index] += 0.5 * servo.most;
+    if (servo.bounded || servo.most != 0.0)
       continue;
     bodies_[body].implicit[servo.v_index] += servo.impulse.stiffness;
     momentum[servo.v_index] += servo.impulse.offset;
@@ -152,9 +187,16 @@ Again ServoRows::again(const StepContext& context, const Solution& solution, boo
   Again again = Again::NO;
   for (Servo& servo : servos_)
   {
-    if (servo.bounded || servo.impulse.stiffness == 0.0)
+    if (servo.most != 0.0)
       continue;
     const Body& body = bodies_[servo.body];
+    if (limitSpeed(servo, body, solution.v[body.v_offset + servo.v_index], context.dt, servo.most))
+    {
+      again = Again::FROM_GUESS;
+      continue;
+    }
+    if (servo.bounded || servo.impulse.stiffness == 0.0)
+      continue;
     const double limit = body.state.drives[servo.joint].effort_limit;
     if (std::abs(effort(servo, solution.v[body.v_offset + servo.v_index], context.dt)) >
         limit * (1.0 + EFFORT_TOLERANCE))
@@ -174,8 +216,11 @@ void ServoRows::accept(const StepContext& context, const StepAnswer& answer)
     JointDrive& drive = body.state.drives[servo.joint];
     if (!context.impact)
       drive.command.target = commandAt(body, servo.joint, context.middle).target;
-    drive.effort = servo.bounded ? answer.solution.r[servo.row] / context.dt
-                                 : effort(servo, answer.solution.v[body.v_offset + servo.v_index], context.dt);
+    if (servo.most != 0.0)
+      drive.effort = (0.5 * servo.most + answer.solution.r[servo.row]) / context.dt;
+    else
+      drive.effort = servo.bounded ? answer.solution.r[servo.row] / context.dt
+                                   : effort(servo, answer.solution.v[body.v_offset + servo.v_index], context.dt);
     // Of an answer beyond its round-off (1e-9) already; of a step that is held, or accepted without an answer, far.
     if (servo.impulse.stiffness > 0.0 && std::abs(drive.effort) > drive.effort_limit * (1.0 + EFFORT_TOLERANCE))
       drive.effort = std::copysign(drive.effort_limit, drive.effort);
@@ -189,7 +234,9 @@ void ServoRows::book(const StepContext&, int body, const Solution& solution, Ene
   for (int k = first_[body]; k < first_[body + 1]; ++k)
   {
     const Servo& servo = servos_[k];
-    if (servo.bounded)
+    if (servo.most != 0.0)
+      ledger.actuators += 0.5 * servo.most * bodies_[body].v_middle[servo.v_index];
+    if (servo.bounded || servo.most != 0.0)
       continue;
     const double velocity = solution.v[bodies_[body].v_offset + servo.v_index];
     ledger.actuators +=

@@ -24,10 +24,11 @@ void setFreeLinkMotion(const Body& body, const Eigen::VectorXd& mean, const Eige
 }
 
 /** A base that moves evenly on a straight line changes no force; a turning one carries what has no joints. */
-void addBaseMotion(const BaseMotion& motion, MultibodyData& data)
+void addBaseMotion(const Body& body, MultibodyData& data)
 {
-  data.link_velocity.front() << motion.linear, motion.angular;
-  data.link_acceleration.front() << -motion.angular.cross(motion.linear), Eigen::Vector3d::Zero();
+  data.link_velocity.front() << body.base.linear, body.base.angular;
+  data.link_acceleration.front() << body.base_rate.linear - body.base.angular.cross(body.base.linear),
+      body.base_rate.angular;
 }
 }  // namespace
 
@@ -43,7 +44,7 @@ void computeStepMotion(const Body& body, const VectorIn& v_end, double dt, Multi
   else
     computeLinkAccelerations(tree, mean, rate, data);
   if (body.model.base_motion.active && tree.nv == 0)
-    addBaseMotion(body.model.base_motion, data);
+    addBaseMotion(body, data);
 }
 
 void addExternalWrenches(const Body& body, const MultibodyData& data, double middle, std::vector<Vector6d>& applied)

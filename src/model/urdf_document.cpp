@@ -3,6 +3,7 @@
 #include <tinyxml2.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "frictional_contact_sim/model/model_error.h"
 #include "urdf_schema.h"
@@ -261,6 +262,67 @@ void readGazebo(XMLElement& gazebo, const Names& links, const Names& joints, con
   }
 }
 
+/** Numbers that the schema has checked. */
+Eigen::Vector3d vectorAttribute(const XMLElement& element, const char* name)
+{
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  const char* text = element.Attribute(name);
+  if (text == nullptr)
+    return vector;
+  std::istringstream words(text);
+  for (double& number : vector)
+  {
+    std::string word;
+    words >> word;
+    parseNumber(word, number);
+  }
+  return vector;
+}
+
+Eigen::Isometry3d readOrigin(const XMLElement& element)
+{
+  const Eigen::Vector3d angles = vectorAttribute(element, "rpy");
+  return Eigen::Translation3d(vectorAttribute(element, "xyz")) *
+         Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
+}
+
+LoopElement readLoop(const XMLElement& element, const Names& links, const std::string& source)
+{
+  LoopElement loop;
+  loop.name = element.Attribute("name");
+  loop.line = element.GetLineNum();
+  const std::string label = "loop_joint '" + loop.name + "'";
+  const std::string type = element.Attribute("type");
+  bool is_known = false;
+  for (const LoopType known : {LoopType::POINT, LoopType::AXIS, LoopType::WELD})
+    if (type == toString(known))
+    {
+      loop.type = known;
+      is_known = true;
+    }
+  if (!is_known)
+    failAt(source, loop.line, label + ": type = '" + type + "', expected point, axis or weld");
+  loop.parent = element.FirstChildElement("parent")->Attribute("link");
+  loop.child = element.FirstChildElement("child")->Attribute("link");
+  for (const std::string& link : {loop.parent, loop.child})
+    if (links.count(link) == 0)
+      failAt(source, loop.line, label + ": there is no link '" + link + "'");
+  if (const XMLElement* origin = element.FirstChildElement("origin"))
+    loop.origin = readOrigin(*origin);
+  if (const XMLElement* origin = element.FirstChildElement("child_origin"))
+    loop.child_origin = readOrigin(*origin);
+  const XMLElement* axis = element.FirstChildElement("axis");
+  if (axis != nullptr && loop.type != LoopType::AXIS)
+    failAt(source, axis->GetLineNum(), label + ": <axis> in a " + type + ", expected it in type = 'axis' only");
+  if (axis != nullptr && largestMagnitude(axis->Attribute("xyz")) < LEAST_AXIS)
+    failAt(source, axis->GetLineNum(), label + ": <axis> xyz = '" + axis->Attribute("xyz") + "', expected a direction");
+  if (axis != nullptr)
+    loop.axis = vectorAttribute(*axis, "xyz").stableNormalized();
+  return loop;
+}
+
 XMLElement& parseXml(const std::string& xml, const std::string& source, tinyxml2::XMLDocument& parsed)
 {
   if (parsed.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
@@ -301,6 +363,12 @@ UrdfDocument readDocument(const std::string& xml, const std::string& source)
   {
     readGazebo(*gazebo, links, joints, source, document, omissions);
     robot.DeleteChild(gazebo);
+  }
+  collectNames(robot, "loop_joint", source);  // no two of one name
+  while (XMLElement* loop = robot.FirstChildElement("loop_joint"))
+  {
+    document.loops.push_back(readLoop(*loop, links, source));
+    robot.DeleteChild(loop);
   }
   const std::vector<std::string> lines = omissions.lines();
   document.warnings.insert(document.warnings.end(), lines.begin(), lines.end());

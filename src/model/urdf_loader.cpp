@@ -9,6 +9,7 @@
 #include <mutex>
 #include <sstream>
 
+#include "frictional_contact_sim/model/kinematics.h"
 #include "joint_inertia.h"
 #include "lumped_inertia.h"
 #include "urdf_document.h"
@@ -119,6 +120,7 @@ public:
       model_.links[i].inertia = combine(parts_[i]);
     addMimics();
     finalize(model_);
+    addLoops();
     return model_;
   }
 
@@ -274,6 +276,35 @@ private:
         joint.mimic.multiplier = urdf_joint->mimic->multiplier;
         joint.mimic.offset = urdf_joint->mimic->offset;
       }
+    }
+  }
+
+  /** Where the child has the joint is said, or follows from the zero position. */
+  void addLoops()
+  {
+    if (document_.loops.empty())
+      return;
+    MultibodyData zero(model_);
+    forwardKinematics(model_, zeroPosition(model_), zero);
+    for (const LoopElement& element : document_.loops)
+    {
+      LoopJoint loop;
+      loop.name = element.name;
+      loop.type = element.type;
+      loop.frame_a = model_.findFrame(element.child);
+      loop.frame_b = model_.findFrame(element.parent);
+      if (model_.frames[loop.frame_a].link == model_.frames[loop.frame_b].link)
+        failAt(source_, element.line,
+               "loop_joint '" + element.name + "': links '" + element.child + "' and '" + element.parent +
+                   "' are one rigid thing, expected two that move against each other");
+      Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
+      if (element.type == LoopType::AXIS)
+        turn.linear() = orientationAlong(element.axis);
+      loop.pose = element.origin * turn;
+      loop.anchor = element.child_origin ? *element.child_origin * turn
+                                         : framePose(model_, zero, loop.frame_a).inverse() *
+                                               framePose(model_, zero, loop.frame_b) * loop.pose;
+      model_.loops.push_back(loop);
     }
   }
 

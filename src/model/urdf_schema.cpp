@@ -45,6 +45,10 @@ constexpr std::array ATTRIBUTES = {
     AttributeRule{"link", "name", 0, Range::ANY, Need::REQUIRED},
     AttributeRule{"joint", "name", 0, Range::ANY, Need::REQUIRED},
     AttributeRule{"joint", "type", 0, Range::ANY, Need::REQUIRED},
+    AttributeRule{"loop_joint", "name", 0, Range::ANY, Need::REQUIRED},
+    AttributeRule{"loop_joint", "type", 0, Range::ANY, Need::REQUIRED},
+    AttributeRule{"child_origin", "xyz", 3, Range::ANY, Need::OPTIONAL},
+    AttributeRule{"child_origin", "rpy", 3, Range::ANY, Need::OPTIONAL},
     AttributeRule{"collision", "name", 0, Range::ANY, Need::OPTIONAL},
     AttributeRule{"parent", "link", 0, Range::ANY, Need::REQUIRED},
     AttributeRule{"child", "link", 0, Range::ANY, Need::REQUIRED},
@@ -85,11 +89,12 @@ struct ElementRule
   bool repeated;  ///< may appear more than once
 };
 
-/// `gazebo` is read apart; it is kept here and removed by the reader.
+/// `gazebo` and `loop_joint` are read apart; they are kept here and removed by the reader.
 constexpr std::array ELEMENTS = {
     ElementRule{"robot", "link", Need::REQUIRED, true},
     ElementRule{"robot", "joint", Need::OPTIONAL, true},
     ElementRule{"robot", "gazebo", Need::OPTIONAL, true},
+    ElementRule{"robot", "loop_joint", Need::OPTIONAL, true},
     ElementRule{"link", "inertial", Need::OPTIONAL, false},
     ElementRule{"link", "collision", Need::OPTIONAL, true},
     ElementRule{"inertial", "origin", Need::OPTIONAL, false},
@@ -109,6 +114,11 @@ constexpr std::array ELEMENTS = {
     ElementRule{"joint", "limit", Need::OPTIONAL, false},
     ElementRule{"joint", "dynamics", Need::OPTIONAL, false},
     ElementRule{"joint", "mimic", Need::OPTIONAL, false},
+    ElementRule{"loop_joint", "parent", Need::REQUIRED, false},
+    ElementRule{"loop_joint", "child", Need::REQUIRED, false},
+    ElementRule{"loop_joint", "origin", Need::OPTIONAL, false},
+    ElementRule{"loop_joint", "child_origin", Need::OPTIONAL, false},
+    ElementRule{"loop_joint", "axis", Need::OPTIONAL, false},
 };
 
 bool same(const char* a, const char* b)
@@ -311,7 +321,7 @@ std::string describeOwner(const XMLElement& element)
 {
   for (const XMLElement* e = &element; e != nullptr; e = e->Parent() == nullptr ? nullptr : e->Parent()->ToElement())
   {
-    if (same(e->Name(), "link") || same(e->Name(), "joint"))
+    if (same(e->Name(), "link") || same(e->Name(), "joint") || same(e->Name(), "loop_joint"))
     {
       const char* name = e->Attribute("name");
       return std::string(e->Name()) + " '" + (name == nullptr ? "" : name) + "'";

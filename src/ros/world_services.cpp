@@ -102,7 +102,7 @@ void attach(const Attach::Request& request, Simulator& simulator, const NameTabl
   const StepOutcome& outcome = simulator.attach(a, b);
   if (!outcome.taken)
     throw RequestError("the impact of the weld has no answer: " + outcome.message);
-  const Weld& weld = simulator.welds().back();
+  const Closure& weld = simulator.welds().back();
   const bool is_swapped = a.body < 0;  // the simulator's link a is never the world
   response.pose = toMessage(is_swapped ? weld.pose.inverse() : weld.pose);
 }

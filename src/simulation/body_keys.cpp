@@ -125,10 +125,77 @@ ExternalWrench readWrench(const ConfigNode& node)
   return wrench;
 }
 
+void readTable(const ConfigNode& node, BaseMotion& motion)
+{
+  std::vector<Eigen::Vector3d> turns;
+  const auto readVectors = [](const ConfigNode& list, std::vector<Eigen::Vector3d>& vectors)
+  {
+    for (const ConfigNode& item : list.items("vectors"))
+      vectors.push_back(item.vector<3>());
+  };
+  node.readMap({required(key("type", [](const ConfigNode&) {})),
+                required(key("times", [&](const ConfigNode& list) { motion.times = list.numbers(); })),
+                key("xyz", [&](const ConfigNode& list) { readVectors(list, motion.displacements); }),
+                key("rpy", [&](const ConfigNode& list) { readVectors(list, turns); })});
+  const size_t count = motion.times.size();
+  if (count == 0 ||
+      std::adjacent_find(motion.times.begin(), motion.times.end(), std::greater_equal<>()) != motion.times.end())
+    node.at("times").failExpecting("at least one time, ascending");
+  if (!node.has("xyz") && !node.has("rpy"))
+    node.fail("has neither xyz nor rpy, expected one of them at the least");
+  if (motion.displacements.empty() && !node.has("xyz"))
+    motion.displacements.assign(count, Eigen::Vector3d::Zero());
+  if (motion.displacements.size() != count)
+    node.at("xyz").failExpecting(std::to_string(count) + " vectors, one a time");
+  if (node.has("rpy") && turns.size() != count)
+    node.at("rpy").failExpecting(std::to_string(count) + " vectors, one a time");
+  for (const Eigen::Vector3d& rpy : turns)
+    motion.turns.push_back(Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                           Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                           Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()));
+}
+
 void readMotion(const ConfigNode& node, BodySpec& body)
 {
-  body.motion.emplace(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
-  node.readMap({key("linear", body.motion->first), key("angular", body.motion->second)});
+  BaseMotion& motion = body.motion.emplace();
+  motion.active = true;
+  using Type = BaseMotion::Type;
+  if (node.has("type"))
+    motion.type = node.at("type").choice(
+        Choices<Type>{{"constant", Type::CONSTANT}, {"sine", Type::SINE}, {"table", Type::TABLE}});
+  if (motion.type == Type::TABLE)
+    readTable(node, motion);
+  else if (motion.type == Type::SINE)
+  {
+    node.readMap({required(key("type", [](const ConfigNode&) {})), required(key("axis", motion.axis)),
+                  required(key("amplitude", motion.amplitude)),
+                  required(key("frequency", motion.frequency, notNegative())), key("phase", motion.phase)});
+    if (!(motion.axis.norm() > 1e-9))
+      node.at("axis").failExpecting("a direction");
+    motion.axis.normalize();
+  }
+  else
+    node.readMap({key("type", [](const ConfigNode&) {}), key("linear", motion.velocity.linear),
+                  key("angular", motion.velocity.angular)});
+}
+
+void readSurfaces(const ConfigNode& node, BodySpec& body)
+{
+  for (const auto& [link, surface] : node.entries())
+  {
+    SurfaceMotion& motion = body.surface_velocity[link];
+    surface.readMap({key("linear", motion.linear), key("angular", motion.angular)});
+  }
+}
+
+void readSprings(const ConfigNode& node, BodySpec& body)
+{
+  for (const auto& [joint, spring] : node.entries())
+  {
+    SpringSpec& read = body.springs[joint];
+    spring.readMap({required(key("stiffness", read.stiffness, notNegative())), key("rest", read.rest),
+                    key("damping", read.damping, notNegative())});
+  }
 }
 
 void readJoints(const ConfigNode& node, BodySpec& body)
@@ -189,6 +256,10 @@ ConfigKeys bodyKeys(BodySpec& body)
           }),
       key(
           "motion", [&body](const ConfigNode& node) { readMotion(node, body); }),
+      key(
+          "surface_velocity", [&body](const ConfigNode& node) { readSurfaces(node, body); }),
+      key(
+          "springs", [&body](const ConfigNode& node) { readSprings(node, body); }),
       key(
           "material", [&body](const ConfigNode& node) { body.material = node.text(); }),
       key(

@@ -140,9 +140,38 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
     return;
   if (floating)
     fail(model.name, "motion is for a fixed base, but its base is floating");
-  if (model.tree.nv > 0 && !spec.motion->second.isZero())
-    fail(model.name, "motion.angular is for a body without joints, this one has " + std::to_string(model.tree.nv));
-  body.model.base_motion = {spec.motion->first, spec.motion->second, true};
+  // What hangs on its joints would feel the acceleration.
+  if (model.tree.nv > 0 && (spec.motion->isProgram() || !spec.motion->velocity.angular.isZero()))
+    fail(model.name, std::string("motion") + (spec.motion->isProgram() ? " over time" : ".angular") +
+                         " is for a body without joints, this one has " + std::to_string(model.tree.nv));
+  body.model.base_motion = *spec.motion;
+  body.model.base_motion.start = body.state.base_pose;
+  if (spec.motion->isProgram())
+    body.state.base_pose = programPose(body.model.base_motion, 0.0);
+}
+
+void setSurfaces(const BodySpec& spec, const Draft& body)
+{
+  for (const auto& [link, motion] : spec.surface_velocity)
+  {
+    expectBelow(spec.name, "surface_velocity.linear", motion.linear, LARGEST_NUMBER, " m/s");
+    expectBelow(spec.name, "surface_velocity.angular", motion.angular, LARGEST_NUMBER, " rad/s");
+    SurfaceMotion surface = motion;
+    surface.frame = body.model.tree.findFrame(link);
+    if (surface.frame < 0)
+      failUnknown(spec.name, "surface_velocity names an unknown link", link, body.model.tree.frames);
+    body.model.surfaces.push_back(surface);
+  }
+}
+
+void setSprings(const BodySpec& spec, const Draft& body)
+{
+  for (const auto& [name, spring] : spec.springs)
+  {
+    const int joint = findSingleJoint(body.model, name, "springs");
+    body.model.springs.push_back({joint, spring.stiffness, spring.rest});
+    body.model.damping[body.model.velocityIndex(joint)] += spring.damping;
+  }
 }
 
 void setSchedules(const BodySpec& spec, const Draft& body)
@@ -296,11 +325,6 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
   for (const std::string& warning : loaded.warnings)
     warnings.push_back("body '" + spec.name + "': " + warning);
   BodyModel model(std::move(loaded.model));
-  const auto limited = std::count_if(model.tree.joints.begin(), model.tree.joints.end(),
-                                     [](const Joint& joint) { return std::isfinite(joint.limit.velocity); });
-  if (limited > 0)
-    warnings.push_back("body '" + spec.name + "': velocity limits of joints are not enforced (" +
-                       std::to_string(limited) + " joints)");
   model.name = spec.name;
   model.gravity_compensation = spec.gravity_compensation;
   return model;
@@ -314,6 +338,8 @@ void setInitialState(const BodySpec& spec, const Draft& body, std::vector<std::s
       {
         setInitialJoints(spec, body, warnings);
         setInitialBase(spec, body);
+        setSurfaces(spec, body);
+        setSprings(spec, body);
       });
 }
 

@@ -67,23 +67,24 @@ void LinkForces::forEachContact(const MultibodyData& data, int body, const Add& 
     }
 }
 
-/** What welds do to the frames of a body, the same way. */
-void LinkForces::addWeldWrenches(const MultibodyData& data, int body, std::vector<Vector6d>& applied)
+/** What welds and loops do to the frames of a body, the same way. */
+void LinkForces::addClosureWrenches(const MultibodyData& data, int body, std::vector<Vector6d>& applied)
 {
-  for (size_t i = 0; i < simulator_.welds().size(); ++i)
-  {
-    const Weld& weld = simulator_.welds()[i];
-    if (weld.body_a != body && weld.body_b != body)
-      continue;
-    const Eigen::Vector3d point =
-        framePose(simulator_.model(weld.body_a), motion(weld.body_a), weld.frame_a).translation();
-    Vector6d wrench = simulator_.weldWrench(static_cast<int>(i));
-    wrench.tail<3>() += (point - data.reference).cross(Eigen::Vector3d(wrench.head<3>()));
-    if (weld.body_a == body)
-      applied[static_cast<size_t>(weld.frame_a)] += wrench;
-    if (weld.body_b == body)
-      applied[static_cast<size_t>(weld.frame_b)] -= wrench;
-  }
+  const double dt = simulator_.report().dt;
+  for (const std::vector<Closure>* closures : {&simulator_.welds(), &simulator_.loops()})
+    for (const Closure& closure : *closures)
+    {
+      if (closure.body_a != body && closure.body_b != body)
+        continue;
+      const Eigen::Isometry3d anchor =
+          framePose(simulator_.model(closure.body_a), motion(closure.body_a), closure.frame_a) * closure.anchor;
+      Vector6d wrench = closure.worldImpulse() / dt;
+      wrench.tail<3>() += (anchor.translation() - data.reference).cross(Eigen::Vector3d(wrench.head<3>()));
+      if (closure.body_a == body)
+        applied[static_cast<size_t>(closure.frame_a)] += wrench;
+      if (closure.body_b == body)
+        applied[static_cast<size_t>(closure.frame_b)] -= wrench;
+    }
 }
 
 Vector6d LinkForces::contactWrench(int body, int frame)
@@ -108,7 +109,7 @@ Vector6d LinkForces::jointWrench(int body, int frame)
   {
     forces.applied.assign(model.frames.size(), Vector6d::Zero());
     forEachContact(data, body, [&](int touched, const Vector6d& wrench) { forces.applied[touched] += wrench; });
-    addWeldWrenches(data, body, forces.applied);
+    addClosureWrenches(data, body, forces.applied);
     addExternalWrenches(simulator_.workspace(body), data, middleOfStep(simulator_.state(), simulator_.report().dt),
                         forces.applied);
     computeJointWrenches(model, data, simulator_.scenario().gravity, forces.applied, forces.joint_wrenches);

@@ -90,9 +90,10 @@ int Simulator::Impl::countIslands()
     if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
       island_of.unite(a, b);
   }
-  for (const Weld& weld : state.rows.welds)
-    if (weld.body_b >= 0 && bodies[weld.body_a].model.tree.nv > 0 && bodies[weld.body_b].model.tree.nv > 0)
-      island_of.unite(weld.body_a, weld.body_b);
+  for (const std::vector<Closure>* closures : {&state.rows.loops, &state.rows.welds})
+    for (const Closure& closure : *closures)
+      if (closure.body_b >= 0 && bodies[closure.body_a].model.tree.nv > 0 && bodies[closure.body_b].model.tree.nv > 0)
+        island_of.unite(closure.body_a, closure.body_b);
   int islands = 0;
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
     islands += bodies[b].model.tree.nv > 0 && island_of.root(b) == b;

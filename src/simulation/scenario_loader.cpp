@@ -5,6 +5,7 @@
 
 #include "frictional_contact_sim/config/yaml_config.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
+#include "loop_keys.h"
 
 namespace frictional_contact_sim
 {
@@ -44,19 +45,12 @@ void readBodies(const ConfigNode& node, Scenario& scenario)
 ConfigKeys futureKeys()
 {
   return {key(
-              "loops",
-              [](const ConfigNode& node)
-              {
-                if (!node.items("loops").empty())
-                  node.fail("kinematic loops are not built yet, expected none");
-              }),
-          key(
-              "quasi_static",
-              [](const ConfigNode& node)
-              {
-                if (node.boolean())
-                  node.fail("quasi-static problems are not built yet, expected false");
-              })};
+      "quasi_static",
+      [](const ConfigNode& node)
+      {
+        if (node.boolean())
+          node.fail("quasi-static problems are not built yet, expected false");
+      })};
 }
 
 Scenario readScenario(const ConfigNode& document)
@@ -65,7 +59,8 @@ Scenario readScenario(const ConfigNode& document)
   scenario.name = document.stem();
   document.readMap(numericKeys(scenario) + surroundingKeys(scenario) + futureKeys() +
                    ConfigKeys{key("duration", scenario.duration, notNegative()),
-                              key("bodies", [&](const ConfigNode& node) { readBodies(node, scenario); })});
+                              key("bodies", [&](const ConfigNode& node) { readBodies(node, scenario); }),
+                              key("loops", [&](const ConfigNode& node) { readLoops(node, scenario); })});
   if (!document.has("bodies"))
     document.fail("has no bodies, expected a list of them under the key 'bodies'");
   const std::vector<ConfigNode> bodies = document.at("bodies").items("bodies");

@@ -38,7 +38,7 @@ void checkWelds(const Simulator& simulator, const SimulationState& state)
       throw StateError("the link of a weld is " + std::to_string(frame) + ", expected 0 to " +
                        std::to_string(frames - 1));
   };
-  for (const Weld& weld : state.rows.welds)
+  for (const Closure& weld : state.rows.welds)
   {
     check(weld.body_a, weld.frame_a, false);
     check(weld.body_b, weld.frame_b, true);
@@ -113,8 +113,9 @@ void Simulator::Impl::applyState()
   state.rows.contacts.clear();
   for (RowMemory& memory : state.rows.memory)
     std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
-  for (Weld& weld : state.rows.welds)
-    weld.impulse.setZero();
+  for (std::vector<Closure>* closures : {&state.rows.loops, &state.rows.welds})
+    for (Closure& closure : *closures)
+      closure.impulse.setZero();
   for (BodyState& body : state.bodies)
     for (JointDrive& drive : body.drives)
       drive.effort = 0.0;

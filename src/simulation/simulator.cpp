@@ -31,6 +31,7 @@ SimulationState makeState(const WorldModel& world)
   SimulationState state;
   state.dt = world.scenario.time_step;
   state.bodies = world.start;
+  state.rows.loops = world.loops;
   return state;
 }
 
@@ -88,7 +89,10 @@ Simulator::~Simulator() = default;
 void Simulator::Impl::updateEnds()
 {
   for (Body& body : bodies)
+  {
+    setBaseTime(body, state.scenario_clock.time(state.dt), state.dt, false);
     updateEnd(body);
+  }
 }
 
 void Simulator::Impl::rememberGood()
@@ -110,7 +114,7 @@ void Simulator::Impl::bookEnergies()
     if (body.model.tree.nv == 0)
       continue;
     state.energy.kinetic += kineticEnergy(body.model.tree, body.end, body.state.v);
-    state.energy.potential += potentialEnergy(body.model.tree, body.end, context.gravity);
+    state.energy.potential += potentialEnergy(body.model.tree, body.end, context.gravity) + springEnergy(body);
   }
   report.energy = state.energy;
 }

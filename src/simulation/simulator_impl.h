@@ -48,7 +48,7 @@ struct Simulator::Impl
   int countIslands();
 
   void applyState();
-  void weld(const Weld& weld);
+  void weld(const Closure& weld);
   void joinWelded();  ///< tells the collision world which shapes are one rigid thing, after the list of welds changed
   const Body* findNotFinite() const;
   void goBack(const SimulationState& before);

@@ -108,7 +108,7 @@ void visit(StateArchive& archive, ContactState& contact)
   archive.number("contact.cone_margin", contact.cone_margin);
 }
 
-void visit(StateArchive& archive, Weld& weld)
+void visit(StateArchive& archive, Closure& weld)
 {
   archive.index("weld.body_a", weld.body_a);
   archive.index("weld.frame_a", weld.frame_a);
@@ -116,6 +116,13 @@ void visit(StateArchive& archive, Weld& weld)
   archive.index("weld.frame_b", weld.frame_b);
   archive.vector("weld.pose", weld.pose.matrix());
   archive.vector("weld.impulse", weld.impulse);
+}
+
+/** What it joins is the world's. */
+void visitLoop(StateArchive& archive, Closure& loop)
+{
+  archive.vector("loop.basis", loop.basis);
+  archive.vector("loop.impulse", loop.impulse);
 }
 
 void visit(StateArchive& archive, EnergyLedger& energy)
@@ -194,8 +201,11 @@ void visitState(StateArchive& archive, SimulationState& state)
       archive.number(memory.name, impulse);
   visit(archive, state.energy);
   archive.number("energy_start", state.energy_start);
+  if (!state.rows.loops.empty() || !archive.skipsEmptyNewLists())
+    for (Closure& loop : archive.fixedList("loops", state.rows.loops))
+      visitLoop(archive, loop);
   if (!state.rows.welds.empty() || !archive.skipsEmptyNewLists())
-    for (Weld& weld : archive.list("welds", state.rows.welds))
+    for (Closure& weld : archive.list("welds", state.rows.welds))
       visit(archive, weld);
 }
 

@@ -49,8 +49,10 @@ const StepOutcome& Simulator::step()
 void Simulator::Impl::moveToMidpoint()
 {
   context.middle = state.scenario_clock.time(state.dt) + 0.5 * context.dt;
+  const double time = state.scenario_clock.time(state.dt);
   for (Body& body : bodies)
   {
+    setBaseTime(body, time, context.dt, true);
     frictional_contact_sim::moveToMidpoint(body, context.dt);
     applyWrenches(body, context.middle);
   }

@@ -1,9 +1,9 @@
-// Links joined and released in a run; see dynamics/weld_rows.h for the rows.
+// Links joined and released in a run; see dynamics/closure_rows.h for the rows. Loops are told, too.
 #include <algorithm>
 #include <stdexcept>
 
 #include "frictional_contact_sim/config/nearest_name.h"
-#include "frictional_contact_sim/dynamics/weld_rows.h"
+#include "frictional_contact_sim/dynamics/closure_rows.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "simulator_impl.h"
 
@@ -88,12 +88,12 @@ private:
   UnionFind sets_;
 };
 
-Side sideA(const Weld& weld)
+Side sideA(const Closure& weld)
 {
   return {weld.body_a, weld.frame_a};
 }
 
-Side sideB(const Weld& weld)
+Side sideB(const Closure& weld)
 {
   return {weld.body_b, weld.frame_b};
 }
@@ -103,10 +103,10 @@ bool isSame(const Side& a, const Side& b)
   return a.body == b.body && a.frame == b.frame;
 }
 
-RigidSets rigidSets(const std::vector<Body>& bodies, const std::vector<Weld>& welds)
+RigidSets rigidSets(const std::vector<Body>& bodies, const std::vector<Closure>& welds)
 {
   RigidSets sets(bodies);
-  for (const Weld& weld : welds)
+  for (const Closure& weld : welds)
     sets.join(sideA(weld), sideB(weld));
   return sets;
 }
@@ -128,10 +128,10 @@ Eigen::Isometry3d poseOf(const std::vector<Body>& bodies, const Side& side)
 }
 
 /** @throws std::invalid_argument where the two cannot be joined */
-void checkSides(const std::vector<Body>& bodies, const std::vector<Weld>& welds, const Side& a, const Side& b)
+void checkSides(const std::vector<Body>& bodies, const std::vector<Closure>& welds, const Side& a, const Side& b)
 {
   const std::string both = describe(bodies, a) + " and " + describe(bodies, b);
-  for (const Weld& weld : welds)
+  for (const Closure& weld : welds)
     if ((isSame(sideA(weld), a) && isSame(sideB(weld), b)) || (isSame(sideA(weld), b) && isSame(sideB(weld), a)))
       throw std::invalid_argument(both + " are welded already");
   RigidSets sets = rigidSets(bodies, welds);
@@ -165,8 +165,13 @@ const StepOutcome& Simulator::attach(const LinkRef& link_a, const LinkRef& link_
   checkSides(bodies, impl_->state.rows.welds, a, b);
   const Eigen::Isometry3d pose_a = poseOf(bodies, a);
   const Eigen::Isometry3d pose_b = poseOf(bodies, b);
-  Weld weld{a.body, a.frame, b.body, b.frame, a_in_b.value_or(pose_b.inverse() * pose_a), Vector6d::Zero()};
-  const Vector6d error = closureError(pose_a, pose_b, weld.pose);
+  Closure weld;
+  weld.body_a = a.body;
+  weld.frame_a = a.frame;
+  weld.body_b = b.body;
+  weld.frame_b = b.frame;
+  weld.pose = a_in_b.value_or(pose_b.inverse() * pose_a);
+  const Vector6d error = closureError(weld.type, pose_a, pose_b * weld.pose, weld.basis);
   if (!(error.head<3>().norm() <= NEAR) || !(error.tail<3>().norm() <= NEAR))
     throw std::invalid_argument("pose: found one that is " + std::to_string(error.head<3>().norm()) + " m and " +
                                 std::to_string(error.tail<3>().norm()) +
@@ -176,7 +181,7 @@ const StepOutcome& Simulator::attach(const LinkRef& link_a, const LinkRef& link_
 }
 
 /** The two have one motion from now on: an inelastic impact at this instant. */
-void Simulator::Impl::weld(const Weld& weld)
+void Simulator::Impl::weld(const Closure& weld)
 {
   const SimulationState before = state;
   const StepSummary last_report = report;
@@ -199,9 +204,9 @@ const StepOutcome& Simulator::detach(const LinkRef& link_a, const LinkRef& link_
 {
   const Side a = findSide(impl_->bodies, link_a);
   const Side b = findSide(impl_->bodies, link_b);
-  std::vector<Weld>& welds = impl_->state.rows.welds;
+  std::vector<Closure>& welds = impl_->state.rows.welds;
   const auto found = std::find_if(welds.begin(), welds.end(),
-                                  [&](const Weld& weld) {
+                                  [&](const Closure& weld) {
                                     return (isSame(sideA(weld), a) && isSame(sideB(weld), b)) ||
                                            (isSame(sideA(weld), b) && isSame(sideB(weld), a));
                                   });
@@ -213,7 +218,7 @@ const StepOutcome& Simulator::detach(const LinkRef& link_a, const LinkRef& link_
   return impl_->outcome;
 }
 
-const std::vector<Weld>& Simulator::welds() const
+const std::vector<Closure>& Simulator::welds() const
 {
   return impl_->state.rows.welds;
 }
@@ -221,6 +226,21 @@ const std::vector<Weld>& Simulator::welds() const
 Vector6d Simulator::weldWrench(int weld) const
 {
   return welds().at(static_cast<size_t>(weld)).impulse / impl_->state.dt;
+}
+
+const std::vector<Closure>& Simulator::loops() const
+{
+  return impl_->state.rows.loops;
+}
+
+const std::string& Simulator::loopName(int loop) const
+{
+  return impl_->world->loop_names.at(static_cast<size_t>(loop));
+}
+
+Vector6d Simulator::loopWrench(int loop) const
+{
+  return loops().at(static_cast<size_t>(loop)).worldImpulse() / impl_->state.dt;
 }
 
 }  // namespace frictional_contact_sim

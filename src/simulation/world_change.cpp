@@ -78,10 +78,10 @@ std::vector<ContactState> carriedContacts(const std::vector<ContactState>& from,
   return contacts;
 }
 
-std::vector<Weld> carriedWelds(const std::vector<Weld>& from, const Renumbering& new_body)
+std::vector<Closure> carriedWelds(const std::vector<Closure>& from, const Renumbering& new_body)
 {
-  std::vector<Weld> welds;
-  for (Weld weld : from)
+  std::vector<Closure> welds;
+  for (Closure weld : from)
   {
     weld.body_a = new_body[static_cast<size_t>(weld.body_a)];
     const bool is_gone = weld.body_a < 0 || (weld.body_b >= 0 && new_body[static_cast<size_t>(weld.body_b)] < 0);
@@ -90,6 +90,21 @@ std::vector<Weld> carriedWelds(const std::vector<Weld>& from, const Renumbering&
       welds.push_back(weld);
   }
   return welds;
+}
+
+/** Impulses of the loops that are still there; new ones come last. */
+void carryLoops(const std::vector<Closure>& from, const Renumbering& new_body, std::vector<Closure>& to)
+{
+  size_t next = 0;
+  for (const Closure& loop : from)
+  {
+    const bool is_gone = new_body[static_cast<size_t>(loop.body_a)] < 0 ||
+                         (loop.body_b >= 0 && new_body[static_cast<size_t>(loop.body_b)] < 0);
+    if (is_gone)
+      continue;
+    to[next].basis = loop.basis;
+    to[next++].impulse = loop.impulse;
+  }
 }
 
 /** `from` in another world; `to` is that world's own start and has the bodies that are new. */
@@ -104,6 +119,7 @@ SimulationState carriedState(const SimulationState& from, SimulationState to, co
   to.energy_start = from.energy_start;
   to.rows.contacts = carriedContacts(from.rows.contacts, new_shape);
   to.rows.welds = carriedWelds(from.rows.welds, new_body);
+  carryLoops(from.rows.loops, new_body, to.rows.loops);
   for (size_t i = 0; i < to.rows.memory.size(); ++i)
     for (const RowMemory& memory : from.rows.memory)  // a kind of row may have come with a body: by name
       if (memory.name == to.rows.memory[i].name)
@@ -123,7 +139,7 @@ EnergyLedger energyOf(const BodyModel& model, BodyState state, const Eigen::Vect
   Body body(model, state);
   updateEnd(body);
   energy.kinetic = kineticEnergy(model.tree, body.end, state.v);
-  energy.potential = potentialEnergy(model.tree, body.end, gravity);
+  energy.potential = potentialEnergy(model.tree, body.end, gravity) + springEnergy(body);
   return energy;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "body_loading.h"
+#include "loops.h"
 #include "start_check.h"
 
 namespace frictional_contact_sim
@@ -90,8 +91,15 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
   world->collision.setBroadPhase(scenario.broad_phase);
   for (const BodySpec& spec : scenario.bodies)
     addDraft(spec, *world);
+  for (const BodyModel& body : world->bodies)
+    addLoopsOfBody(static_cast<int>(&body - world->bodies.data()), *world);
+  addLoopsOfScenario(*world);
+  closeLoops(*world);
   for (size_t b = 0; b < world->bodies.size(); ++b)
     placeBody(scenario.bodies[b], {world->bodies[b], world->start[b]}, *world);
+  for (const Closure& loop : world->loops)
+    separate(loop, *world);
+  checkLoops(*world);
   if (scenario.ground)
   {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -115,7 +123,12 @@ std::shared_ptr<const WorldModel> withBody(const WorldModel& world, const Scenar
   next->scenario.bodies.push_back(spec);
   addDraft(spec, *next);
   const size_t body = next->bodies.size() - 1;
+  const size_t old_loops = next->loops.size();
+  addLoopsOfBody(static_cast<int>(body), *next);
+  closeLoops(*next, old_loops);
   placeBody(spec, {next->bodies[body], next->start[body]}, *next);
+  for (size_t i = old_loops; i < next->loops.size(); ++i)
+    separate(next->loops[i], *next);
   next->collision.putStaticLast();
   disableOverlaps(*next, static_cast<int>(body));
   judgeInertia(*next, body);
@@ -131,6 +144,7 @@ std::shared_ptr<const WorldModel> withoutBody(const WorldModel& world, const Sce
   next->bodies.erase(next->bodies.begin() + body);
   next->start.erase(next->start.begin() + body);
   next->collision.removeBody(body);
+  removeLoopsOfBody(body, *next);
   setPairs(*next);
   return next;
 }

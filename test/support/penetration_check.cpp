@@ -134,6 +134,14 @@ bool PenetrationCheck::mayTouch(const Part& a, const Part& b) const
 {
   if (a.immobile && b.immobile)
     return false;
+  for (const Closure& loop : simulator_.loops())
+  {
+    const auto isAt = [&](const Part& part, int body, int frame)
+    { return body == part.body && simulator_.model(body).frames[static_cast<size_t>(frame)].link == part.link; };
+    if (loop.body_b >= 0 && ((isAt(a, loop.body_a, loop.frame_a) && isAt(b, loop.body_b, loop.frame_b)) ||
+                             (isAt(b, loop.body_a, loop.frame_a) && isAt(a, loop.body_b, loop.frame_b))))
+      return false;
+  }
   if (a.body != b.body)
     return true;
   const std::vector<Joint>& joints = simulator_.model(a.body).joints;

@@ -186,7 +186,8 @@ bool RunAudit::isDriven() const
 {
   for (int body = 0; body < simulator_.bodyCount(); ++body)
   {
-    if (!simulator_.state().bodies[body].wrenches.empty() || simulator_.scenario().bodies[body].motion)
+    if (!simulator_.state().bodies[body].wrenches.empty() || simulator_.scenario().bodies[body].motion ||
+        !simulator_.scenario().bodies[body].surface_velocity.empty())
       return true;
     for (const JointDrive& drive : simulator_.state().bodies[body].drives)
       if (drive.command.mode != JointCommand::Mode::EFFORT || drive.command.target != 0.0)
@@ -264,8 +265,9 @@ void RunAudit::checkWeight()
       held = true;  // by other things than contacts
     mass += model.nv > 0 ? model.totalMass() : 0.0;
   }
-  for (const Weld& weld : simulator_.welds())
-    held = held || weld.body_b < 0 || simulator_.model(weld.body_b).nv == 0;
+  for (const std::vector<Closure>* closures : {&simulator_.welds(), &simulator_.loops()})
+    for (const Closure& closure : *closures)
+      held = held || closure.body_b < 0 || simulator_.model(closure.body_b).nv == 0;
   if (held)
   {
     weighed_ = 0;
@@ -307,11 +309,13 @@ void RunAudit::checkMomentum()
         impulse += sign * contact.impulse;
         scale += contact.impulse.norm();
       }
-      for (const Weld& weld : simulator_.welds())
-      {
-        impulse += ((weld.body_a == body ? 1.0 : 0.0) - (weld.body_b == body ? 1.0 : 0.0)) * weld.impulse.head<3>();
-        scale += weld.impulse.head<3>().norm();
-      }
+      for (const std::vector<Closure>* closures : {&simulator_.welds(), &simulator_.loops()})
+        for (const Closure& closure : *closures)
+        {
+          const double sign = (closure.body_a == body ? 1.0 : 0.0) - (closure.body_b == body ? 1.0 : 0.0);
+          impulse += sign * closure.impulse.head<3>();
+          scale += closure.impulse.head<3>().norm();
+        }
       Eigen::Vector3d change = Eigen::Vector3d::Zero();
       for (int row = 0; row < 3; ++row)
       {

@@ -8,6 +8,7 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -85,6 +86,9 @@ public:
 
   /** @brief Two links of a body never collide. @throws std::invalid_argument naming an unknown link */
   void disablePair(int body, const std::string& link_1, const std::string& link_2);
+
+  /** @brief Two links, each {body, link of its model}, never collide: a joint beside the trees joins them. */
+  void disableJoined(std::array<int, 2> one, std::array<int, 2> other);
 
   /** @brief No two links of a body collide. */
   void disableSelfCollision(int body);

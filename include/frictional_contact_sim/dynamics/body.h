@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/dynamics/base_motion.h"
 #include "frictional_contact_sim/dynamics/command_schedule.h"
 #include "frictional_contact_sim/dynamics/joint_trajectory.h"
 #include "frictional_contact_sim/model/kinematics.h"
@@ -17,12 +18,12 @@
 
 namespace frictional_contact_sim
 {
-/** @brief Prescribed motion of a fixed base, world axes. */
-struct BaseMotion
+/** @brief A spring at a joint with one coordinate: effort stiffness (rest - q), beside any command. */
+struct JointSpring
 {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();  ///< of the root link origin [m/s]
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< [rad/s]
-  bool active = false;
+  int joint = -1;
+  double stiffness = 0.0;  ///< [N m/rad] or [N/m], >= 0
+  double rest = 0.0;  ///< [rad] or [m]
 };
 
 /** @brief The constant part, shared by all simulations of it. */
@@ -44,6 +45,8 @@ struct BodyModel
   bool free_link;  ///< one floating link: stepped about its centre of mass, see free_link.h
   bool isotropic;  ///< the root link's principal moments are equal
   BaseMotion base_motion;
+  std::vector<SurfaceMotion> surfaces;  ///< of links whose surface moves
+  std::vector<JointSpring> springs;
   std::vector<CommandSchedule> schedules;  ///< joints: commands over time, empty where there is none
   bool gravity_compensation = false;  ///< servos also carry what hangs on their joints (servo_rows.h)
 
@@ -102,10 +105,22 @@ struct Body
   double speed = 0.0;  ///< largest speed of a point of its links at v_start and v_free [m/s]
   double speed_change = 0.0;  ///< largest change of such a speed by one step's smooth forces, at least 1e-12 [m/s]
   int v_offset = 0;  ///< of its velocities in the problem
+  BaseVelocity base;  ///< of a moving base: over the step, from its midpoint to the next one; at the end mean about it
+  Eigen::Matrix3d base_turn;  ///< of a moving base: with the arm from its origin what base.angular adds to a point
+  std::vector<Eigen::Matrix3d> surface_turns;  ///< BodyModel::surfaces: the same, axes of the link
+  BaseVelocity base_rate;  ///< its change [m/s^2], [rad/s^2], mean over the step
+  double base_time = 0.0;  ///< of the state, on the scenario's clock [s]
 };
+
+/** @brief The state is at `time` of the scenario's clock: velocities of a moving base for the step that begins there,
+ * or (where no step has begun) for that instant. */
+void setBaseTime(Body& body, double time, double dt, bool in_step);
 
 /** @brief Where a fixed base is `dt` after base_pose on its prescribed path; base_pose itself without one. */
 Eigen::Isometry3d basePose(const Body& body, double dt);
+
+/** @brief What the body's springs have stored [J]. */
+double springEnergy(const Body& body);
 
 /** @brief Poses and velocities of `body.end` at (q, v). */
 void updateEnd(Body& body);

@@ -16,10 +16,10 @@
 
 #include "frictional_contact_sim/collision/collision_world.h"
 #include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/closure.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/row_sink.h"
-#include "frictional_contact_sim/dynamics/weld.h"
 #include "frictional_contact_sim/model/kinematics.h"
 
 namespace frictional_contact_sim
@@ -56,7 +56,8 @@ struct RowState
 {
   std::vector<ContactState> contacts;  ///< of the last step, ordered by shapes and feature
   std::vector<RowMemory> memory;  ///< one a source that keeps impulses
-  std::vector<Weld> welds;  ///< links that are joined now
+  std::vector<Closure> loops;  ///< of the scenario and its URDFs, in their order
+  std::vector<Closure> welds;  ///< links that were joined in the run
 };
 
 /** @brief RowMemory of a source with so many impulses a joint. */

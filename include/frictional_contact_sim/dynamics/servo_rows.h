@@ -9,6 +9,11 @@
  * last step is a row from the start; one found beyond it becomes a row and the step is solved again. Rows are only ever
  * added within a step, so this ends.
  *
+ * At the joint's velocity limit w a drive pushes no more: its effort in the direction of motion falls to zero there,
+ * nothing brakes beyond it. A drive found to push a joint faster than w is solved again with the law of dry friction
+ * about that velocity: with e the impulse it would have at w, dt tau = e/2 + r, |r| <= |e|/2 against v_j - w; all of e
+ * below w, none beyond it, what is needed to keep w at it.
+ *
  * Gravity compensation (BodyModel::gravity_compensation) adds to tau_ff of every servo (not of an effort) what holds
  * the links beyond its joint against gravity, at the midpoint; for a joint that others mimic their share too. Of a
  * fixed base that is all of gravity; of a floating one what the limbs weigh, not what stands on them.
@@ -49,12 +54,16 @@ private:
     int v_index;  ///< in the body's v
     ServoImpulse impulse;  ///< of this step
     bool bounded = false;  ///< solved as a row in this step
+    double most =
+        0.0;  ///< impulse at the velocity limit that is solved for in this step, its sign that of v_j; 0 = none
     int row = -1;  ///< then
   };
   static std::vector<Follower> findFollowers(const MultibodyModel& tree, const std::vector<int>& servo_of);
   static void countAsForce(const StepContext& context, Body& body, const Servo& servo);
   void addGravity(const StepContext& context, int body);
   static double effort(const Servo& servo, double velocity, double dt);
+  double velocityLimit(const Servo& servo) const;
+  bool limitSpeed(const Servo& servo, const Body& body, double velocity, double dt, double& most) const;
 
   std::vector<Body>& bodies_;
   JointMemory memory_;

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/model/geometry.h"
+#include "frictional_contact_sim/model/loop_joint.h"
 
 namespace frictional_contact_sim
 {
@@ -128,6 +129,7 @@ struct MultibodyModel
   std::vector<Joint> joints;  ///< joint i moves link i
   std::vector<Frame> frames;
   std::vector<CollisionShape> shapes;
+  std::vector<LoopJoint> loops;  ///< no part of the tree: rows of the simulation
   int nq = 0;
   int nv = 0;
   std::vector<int> dof_parent;  ///< nv: the velocity coordinate before this one on the way to the root, -1 at the root

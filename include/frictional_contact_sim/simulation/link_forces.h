@@ -43,7 +43,7 @@ private:
   const MultibodyData& motion(int body);
   template <typename Add>
   void forEachContact(const MultibodyData& data, int body, const Add& add) const;
-  void addWeldWrenches(const MultibodyData& data, int body, std::vector<Vector6d>& applied);
+  void addClosureWrenches(const MultibodyData& data, int body, std::vector<Vector6d>& applied);
 
   const Simulator& simulator_;
   std::vector<BodyForces> bodies_;

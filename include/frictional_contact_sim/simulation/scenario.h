@@ -15,9 +15,11 @@
 
 #include "frictional_contact_sim/collision/broad_phase_kind.h"
 #include "frictional_contact_sim/dynamics/actuation.h"
+#include "frictional_contact_sim/dynamics/base_motion.h"
 #include "frictional_contact_sim/dynamics/command_schedule.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
+#include "frictional_contact_sim/model/loop_joint.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/simulation/failure.h"
 #include "frictional_contact_sim/simulation/sensor.h"
@@ -30,6 +32,13 @@ struct JointInit
 {
   double position = 0.0;
   double velocity = 0.0;
+};
+
+struct SpringSpec
+{
+  double stiffness = 0.0;  ///< [N m/rad] or [N/m], >= 0
+  double rest = 0.0;  ///< [rad] or [m]
+  double damping = 0.0;  ///< besides the joint's own [N m s/rad] or [N s/m], >= 0
 };
 
 struct BodySpec
@@ -47,7 +56,9 @@ struct BodySpec
   bool hold_initial_position = false;  ///< every actuated joint without a command gets a position servo at its start
   bool gravity_compensation = false;  ///< position and velocity servos also carry the weight of what they move
   std::vector<ExternalWrench> wrenches;
-  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> motion;  ///< fixed base: linear, angular velocity
+  std::optional<BaseMotion> motion;  ///< of a fixed base
+  std::map<std::string, SurfaceMotion> surface_velocity;  ///< by link; its frame is found when the body is loaded
+  std::map<std::string, SpringSpec> springs;  ///< by joint
   std::string material = "default";
   std::map<std::string, std::string> link_materials;  ///< by link, where it is not `material`
   std::vector<SensorSpec> sensors;
@@ -55,6 +66,24 @@ struct BodySpec
   std::vector<std::pair<std::string, std::string>> disable_collisions;  ///< pairs of links
   std::optional<double> min_joint_inertia;  ///< see loadUrdf [kg m^2] or [kg] > 0
   std::string source;  ///< where it was read, "FILE:LINE: key 'bodies[0]'", for messages; may be empty
+};
+
+/** @brief Where one of two bodies has a loop's joint. */
+struct LoopSide
+{
+  std::string body;  ///< empty: the world
+  std::string link;
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the link; its z axis is the joint's
+};
+
+/** @brief A joint beside the trees of the bodies. */
+struct LoopSpec
+{
+  std::string name;
+  LoopType type = LoopType::POINT;
+  LoopSide a;
+  LoopSide b;
+  std::string source;  ///< as BodySpec::source
 };
 
 struct GroundSpec
@@ -75,6 +104,7 @@ struct Scenario
   MaterialTable materials;
   std::optional<GroundSpec> ground;
   std::vector<BodySpec> bodies;
+  std::vector<LoopSpec> loops;
   FailureOptions failure;
   ContactLawForm contact_law = ContactLawForm::GAP;
   BroadPhaseKind broad_phase = BroadPhaseKind::AUTO;  ///< changes the time of a step, nothing else

@@ -165,9 +165,14 @@ public:
   /** @brief Ends a weld, in whatever order its links are named. @throws std::invalid_argument when they are not welded
    */
   const StepOutcome& detach(const LinkRef& a, const LinkRef& b);
-  const std::vector<Weld>& welds() const;  ///< in the order they were made
+  const std::vector<Closure>& welds() const;  ///< in the order they were made
   /** @brief Mean force and torque (about the origin of link a) on link a over the last step, world axes [N, N m]. */
   Vector6d weldWrench(int weld) const;
+  /** @brief What closes kinematic loops: of the URDFs body by body, then of the scenario, then of spawned bodies. */
+  const std::vector<Closure>& loops() const;
+  const std::string& loopName(int loop) const;
+  /** @brief As weldWrench, torque about the anchor. */
+  Vector6d loopWrench(int loop) const;
 
   /**
    * @brief One body more, the last, at the pose and velocities of `spec`, which are also those a reset takes it to.

@@ -10,6 +10,7 @@
 
 #include "frictional_contact_sim/collision/collision_world.h"
 #include "frictional_contact_sim/dynamics/body.h"
+#include "frictional_contact_sim/dynamics/closure.h"
 #include "frictional_contact_sim/dynamics/pair_table.h"
 #include "frictional_contact_sim/simulation/scenario.h"
 
@@ -19,6 +20,8 @@ struct WorldModel
 {
   Scenario scenario;
   std::vector<BodyModel> bodies;
+  std::vector<Closure> loops;  ///< those of the URDFs body by body, then the scenario's; those of spawned bodies last
+  std::vector<std::string> loop_names;  ///< for messages
   std::vector<BodyState> start;  ///< of each body, before the impact solve of the start
   CollisionWorld collision;  ///< copies share its shapes
   std::vector<SurfaceSide> sides;  ///< by shape handle
