@@ -70,21 +70,14 @@ void MarginTrend::add(double time, double margin)
 double MarginTrend::rate() const
 {
   const int size = std::min(count_, LENGTH);
-  if (size < 3)
+  if (size < 5)
     return 0.0;
-  double mean_time = 0.0, mean_margin = 0.0;
-  for (int k = 0; k < size; ++k)
-  {
-    mean_time += times_[k] / size;
-    mean_margin += margins_[k] / size;
-  }
-  double covariance = 0.0, variance = 0.0;
-  for (int k = 0; k < size; ++k)
-  {
-    covariance += (times_[k] - mean_time) * (margins_[k] - mean_margin);
-    variance += (times_[k] - mean_time) * (times_[k] - mean_time);
-  }
-  return variance > 0.0 ? covariance / variance : 0.0;
+  std::vector<double> slopes;
+  for (int k = count_ - size + 1; k < count_; ++k)
+    slopes.push_back((margins_[k % LENGTH] - margins_[(k - 1) % LENGTH]) /
+                     (times_[k % LENGTH] - times_[(k - 1) % LENGTH]));
+  std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
+  return slopes[slopes.size() / 2];
 }
 
 std::string Simulator::Impl::sideName(int shape) const
@@ -204,7 +197,10 @@ void Simulator::Impl::certifyStep()
     result.message = error.what();
     return;
   }
-  trend.add(report.time, result.margin);
+  if (result.islands.empty())
+    trend.clear();
+  else
+    trend.add(report.time, result.margin);
   result.margin_rate = trend.rate();
   if (!result.warning.empty() || result.margin <= 0.0 || result.margin_rate >= 0.0)
     return;

@@ -34,7 +34,8 @@ IslandCertificate certifyIsland(const Problem& problem, const CertifyOptions& op
     result.margin = best.margin;
     result.upper_bound = best.upper_bound;
     // A maximum that is found is a certificate as well; what limits it is named where nothing is refuted.
-    if (result.existence.verdict == Existence::UNDECIDED && best.verdict != Existence::UNDECIDED)
+    const bool proves = result.existence.verdict == Existence::UNDECIDED && best.verdict != Existence::UNDECIDED;
+    if (proves || (best.verdict == Existence::CERTIFIED && best.exact && !result.existence.exact))
       result.existence = best;
     else if (result.existence.verdict != Existence::REFUTED)
     {
