@@ -21,8 +21,8 @@ void check(const Eigen::MatrixXd& A)
 }
 
 /**
- * Every principal minor is a product of pivots, and every pivot is the first entry of a Schur complement: with the first
- * row in or out, both of what is left. @param size of the entries that a pivot was computed from
+ * Every principal minor is a product of pivots, and every pivot is the first entry of a Schur complement: with the
+ * first row in or out, both of what is left. @param size of the entries that a pivot was computed from
  */
 void visitMinors(const Eigen::MatrixXd& S, const Eigen::MatrixXd& size, int first, std::vector<int>& rows,
                  PMatrixReport& report)
@@ -87,7 +87,8 @@ CopositivityReport checkCopositivity(const Eigen::MatrixXd& A)
     {
       Eigen::VectorXd candidate = spectrum.eigenvectors().col(k);
       candidate *= candidate.sum() < 0.0 ? -1.0 : 1.0;
-      // Where the least eigenvalue is a multiple one its vectors have any sign; a smaller sub-matrix has the proof then.
+      // Where the least eigenvalue is a multiple one its vectors have any sign; a smaller sub-matrix has the proof
+      // then.
       candidate = candidate.cwiseMax(0.0);
       if (candidate.norm() < 0.5)
         continue;

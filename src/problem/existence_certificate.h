@@ -24,8 +24,8 @@ private:
 };
 
 /**
- * @brief How far the data must move for v to be exact: with w changed in row j by at most this many units of round-off of
- * |H||v| + |w| the margin is at least 0 (rounding errors of this evaluation counted in).
+ * @brief How far the data must move for v to be exact: with w changed in row j by at most this many units of round-off
+ * of |H||v| + |w| the margin is at least 0 (rounding errors of this evaluation counted in).
  * @param distance as in verifiedMargin. @param change the largest change of w itself [m/s]
  * @return units of DBL_EPSILON; infinite where no change of that kind helps
  */

@@ -215,8 +215,8 @@ Eigen::AlignedBox3d boundingBox(const CollisionShape& shape, const Eigen::Isomet
   return {center - half, center + half};
 }
 
-
-/** @brief Red balls at contacts that no velocity satisfies together, pale where that is only foreseen; with the words. */
+/** @brief Red balls at contacts that no velocity satisfies together, pale where that is only foreseen; with the words.
+ */
 size_t appendBlocking(const StepCertificate& certificate, const MarkerScale& scale, const ros::Time& stamp,
                       visualization_msgs::MarkerArray& message)
 {

@@ -49,10 +49,11 @@ void SimulatorNode::advertiseRequests()
         setSolver(request, simulator_);
         reconfiguration_->update();
       });
-  services_.add<DumpFclib>("dump_fclib", [this](const auto& request, auto& response)
-                           { dumpFclib(request, simulator_, parameters_.dump_dir, response); });
-  services_.add<Certify>(
-      "certify", [this](const auto& request, auto& response) { certifyStep(request, simulator_, response); });
+  services_.add<DumpFclib>(
+      "dump_fclib",
+      [this](const auto& request, auto& response) { dumpFclib(request, simulator_, parameters_.dump_dir, response); });
+  services_.add<Certify>("certify",
+                         [this](const auto& request, auto& response) { certifyStep(request, simulator_, response); });
   services_.add<GetInfo>("get_info",
                          [this](const auto&, auto& response)
                          {

@@ -59,8 +59,8 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   contacts_publisher_ = advertise(private_node, "contacts", DATA_QUEUE, &StepPublisher::contacts);
   step_report_publisher_ = private_node.advertise<StepReport>("step_report", DATA_QUEUE);
   certificate_publisher_ = private_node.advertise<CertificateReport>("certificate", DATA_QUEUE);
-  data_topics_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(),
-                  step_report_publisher_.getTopic(), certificate_publisher_.getTopic()};
+  data_topics_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(), step_report_publisher_.getTopic(),
+                  certificate_publisher_.getTopic()};
   odometry_.resize(simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
     advertiseOdometry(private_node, body,
@@ -135,7 +135,8 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
   std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_, &certificate_publisher_, &markers_publisher_, &tf_publisher_};
+                                                   &step_report_publisher_,  &certificate_publisher_,
+                                                   &markers_publisher_,      &tf_publisher_};
   if (publish_clock_)
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)

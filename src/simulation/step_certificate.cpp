@@ -139,11 +139,11 @@ void Simulator::Impl::certify(CertifyOptions options, StepCertificate& result) c
   result.limiting = nameRows(certificate.limiting, {});
   result.islands.clear();
   for (const IslandCertificate& island : certificate.islands)
-    result.islands.push_back({static_cast<int>(std::count_if(island.laws.begin(), island.laws.end(),
-                                                             [&](int law)
-                                                             { return assembly.contactOf(context, law) != nullptr; })),
-                              island.existence.verdict, island.margin, island.conditioning.rows,
-                              island.conditioning.rank, island.conditioning.condition});
+    result.islands.push_back(
+        {static_cast<int>(std::count_if(island.laws.begin(), island.laws.end(),
+                                        [&](int law) { return assembly.contactOf(context, law) != nullptr; })),
+         island.existence.verdict, island.margin, island.conditioning.rows, island.conditioning.rank,
+         island.conditioning.condition});
   result.message = certificate.message;
   result.warning.clear();
   result.seconds_left = std::numeric_limits<double>::infinity();
@@ -172,8 +172,8 @@ void Simulator::Impl::foresee(CertifyOptions options, StepCertificate& result) c
     return;
   result.blocking = nameRows(certificate.blocking, certificate.blocking_bilaterals);
   result.seconds_left = std::max(0.0, context.dt * result.margin / -certificate.margin);
-  result.warning = "in " + inOneUnit(result.seconds_left) + " no velocity will keep these from penetrating: " +
-                   joinNames(result.blocking);
+  result.warning = "in " + inOneUnit(result.seconds_left) +
+                   " no velocity will keep these from penetrating: " + joinNames(result.blocking);
 }
 
 void Simulator::Impl::certifyStep()

@@ -108,15 +108,16 @@ void HoldExpression::check(const RunQuantities& quantities) const
 
 bool HoldExpression::holds(const RunQuantities& quantities) const
 {
-  return std::all_of(comparisons_.begin(), comparisons_.end(),
-                     [&](const Comparison& one)
-                     {
-                       const double value = quantities.at(one.quantity);
-                       return one.relation == "<"    ? value < one.value
-                              : one.relation == "<=" ? value <= one.value
-                              : one.relation == ">"  ? value > one.value
-                                                     : value >= one.value;
-                     });
+  return std::all_of(
+      comparisons_.begin(), comparisons_.end(),
+      [&](const Comparison& one)
+      {
+        const double value = quantities.at(one.quantity);
+        return one.relation == "<"    ? value < one.value
+               : one.relation == "<=" ? value <= one.value
+               : one.relation == ">"  ? value > one.value
+                                      : value >= one.value;
+      });
 }
 
 RunRecord recordRun(const Scenario& scenario, const std::function<void(double)>& progress)

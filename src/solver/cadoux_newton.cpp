@@ -16,8 +16,9 @@ constexpr int MOST_LANDING_ROWS = 300;
 
 bool isPlanar(const DelassusProblem& problem)
 {
-  return std::none_of(problem.laws.begin(), problem.laws.end(), [](const Law& law)
-                      { return law.type == LawType::COULOMB_3D && law.coefficient > 0.0; });
+  return std::none_of(
+      problem.laws.begin(), problem.laws.end(),
+      [](const Law& law) { return law.type == LawType::COULOMB_3D && law.coefficient > 0.0; });
 }
 
 template <int D>

@@ -141,7 +141,9 @@ const OptionTable<LcpLemkeOptions>& LcpLemkeOptions::table()
           "lcp_lemke",
           {
               {"method", &LcpLemkeOptions::method, {"lemke", "principal_pivoting"}, "way of pivoting"},
-              {"form", &LcpLemkeOptions::form, {"reduced", "stewart"},
+              {"form",
+               &LcpLemkeOptions::form,
+               {"reduced", "stewart"},
                "of planar contacts: (4.2), or the copositive one that cannot fail when nothing outside moves"},
               {"facets", &LcpLemkeOptions::facets, between(4, 1000), "directions",
                "of the polyhedral cone in 3D, an even number"},

@@ -115,8 +115,7 @@ Json report(const Arguments& arguments, const FclibProblem& problem)
   const bool local = problem.kind == FclibKind::LOCAL;
   const Certificate certificate =
       local ? certify(problem.local, arguments.options) : certify(problem.global, arguments.options);
-  const UniquenessReport uniqueness =
-      local ? checkUniqueness(problem.local) : checkUniqueness(problem.global);
+  const UniquenessReport uniqueness = local ? checkUniqueness(problem.local) : checkUniqueness(problem.global);
   Json islands = Json::array();
   for (const IslandCertificate& island : certificate.islands)
     islands.push_back(describe(island, arguments, problem.contacts));
@@ -130,8 +129,7 @@ Json report(const Arguments& arguments, const FclibProblem& problem)
       {"bound", certificate.bound},
       {"exact", certificate.exact},
       {"blocking_contacts", contactsAmong(certificate.blocking, problem.contacts)},
-      {"blocking_bilaterals",
-       bilateralsAmong(certificate.blocking, certificate.blocking_bilaterals, problem.contacts)},
+      {"blocking_bilaterals", bilateralsAmong(certificate.blocking, certificate.blocking_bilaterals, problem.contacts)},
       {"limiting_contacts", contactsAmong(certificate.limiting, problem.contacts)},
       {"rows", certificate.rows},
       {"rank", certificate.rank},
@@ -230,8 +228,9 @@ int main(int argc, char** argv)
   app.add_flag("!--no-margin", arguments.options.margin, "stop at the verdict: the margin is the first certificate's");
   app.add_flag("--klarbring-pang", arguments.options.klarbring_pang,
                "theorem 3.1 itself and (3.34): solvable whatever moves outside");
-  app.add_option("--solver", arguments.solver, "theorem 3.20 at the answer of this method (global files); else at the "
-                                               "file's own solution, where it has one");
+  app.add_option("--solver", arguments.solver,
+                 "theorem 3.20 at the answer of this method (global files); else at the "
+                 "file's own solution, where it has one");
   app.add_flag("--proof", arguments.proof, "the velocity or the multipliers that prove the verdict");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
   return tools::runTool(app, argc, argv, [&] { return run(arguments); });

@@ -72,8 +72,8 @@ void write(const std::string& path, const IncrementalProblem& problem, const std
   const Certificate certificate = certify(problem, options);
   char margin[64];
   std::snprintf(margin, sizeof(margin), "margin %.3g for |v| <= %.3g", certificate.margin, certificate.bound);
-  const std::string verdict = std::string("existence ") + toString(certificate.existence) + " (" + margin + ", " +
-                              certificate.message + ")";
+  const std::string verdict =
+      std::string("existence ") + toString(certificate.existence) + " (" + margin + ", " + certificate.message + ")";
   writeFclib(path, problem, {family, "family " + family + ": " + parameters + "; " + verdict, ""});
   std::printf("%s: %zu contacts, %d velocities, %s\n", path.c_str(), problem.laws.size(), problem.velocities(),
               verdict.c_str());

@@ -149,8 +149,9 @@ TEST(UniquenessTest, ASmallFrictionOnARegularMatrixIsAContraction)
   const Eigen::MatrixXd A = gauss(9, 9, random);
   const Eigen::MatrixXd W = A * A.transpose() / 9.0 + Eigen::MatrixXd::Identity(9, 9);
   const Eigen::VectorXd q = Eigen::VectorXd::Ones(9);
-  const auto report = [&](double mu)
-  { return checkUniqueness(localProblem(W, q, std::vector<Law>(3, {LawType::COULOMB_3D, mu}))); };
+  const auto report = [&](double mu) {
+    return checkUniqueness(localProblem(W, q, std::vector<Law>(3, {LawType::COULOMB_3D, mu})));
+  };
   const UniquenessReport small = report(0.1), large = report(0.2);
   EXPECT_NEAR(large.contraction, 2.0 * small.contraction, 1e-9);
   EXPECT_EQ(report(0.9 * 0.1 / small.contraction).verdict, Uniqueness::UNIQUE_V);

@@ -20,7 +20,8 @@ std::string incline(double degrees)
 {
   const double angle = degrees * M_PI / 180.0;
   return "time_step: 0.002\nduration: 0.3\n"
-         "gravity: [" + std::to_string(9.81 * std::sin(angle)) + ", 0, " + std::to_string(-9.81 * std::cos(angle)) +
+         "gravity: [" +
+         std::to_string(9.81 * std::sin(angle)) + ", 0, " + std::to_string(-9.81 * std::cos(angle)) +
          "]\nground: {}\nbodies:\n  - name: box\n    urdf: " + std::string(PROJECT_DIR) +
          "/urdf/block.urdf\n    pose: {xyz: [0, 0, 0.1]}\n";
 }
@@ -189,7 +190,7 @@ TEST(ThresholdTest, OneNumberOfAScenarioFileIsChanged)
   EXPECT_EQ(loadScenarioFile(file, "materials.rubber.friction", 0.25).materials.fallback.friction, 0.7);
   EXPECT_EQ(loadScenarioFile(file, "bodies.block.pose.xyz.2", 0.375).bodies[1].pose->translation().z(), 0.375);
   EXPECT_EQ(loadScenarioFile(file, "bodies.0.pose.xyz.0", 0.5).bodies[0].pose->translation().x(), 0.5);
-  for (const char* wrong : {"materials.default.fricton", "bodies.nobody.pose.xyz.2", "bodies", "", "time_step.x",
-                            "materials..friction"})
+  for (const char* wrong :
+       {"materials.default.fricton", "bodies.nobody.pose.xyz.2", "bodies", "", "time_step.x", "materials..friction"})
     EXPECT_THROW(loadScenarioFile(file, wrong, 1.0), ScenarioError) << wrong;
 }

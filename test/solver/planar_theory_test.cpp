@@ -74,8 +74,7 @@ TEST(PlanarNewtonTest, EndsAfterAsManyStepsForAnyTolerance)
   int solved = 0, most = 0;
   for (std::uint32_t seed = 1; seed <= 60; ++seed)
   {
-    const DelassusProblem problem =
-        planarProblem(1 + static_cast<int>(seed % 6), seed % 2 == 0 ? 0 : 3, 1000 + seed);
+    const DelassusProblem problem = planarProblem(1 + static_cast<int>(seed % 6), seed % 2 == 0 ? 0 : 3, 1000 + seed);
     int iterations = -1;
     for (const double tolerance : {1e-6, 1e-9, 1e-12})
     {

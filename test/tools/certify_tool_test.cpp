@@ -87,8 +87,9 @@ TEST_F(CertifyToolTest, PainlevesRodIsUndecidedWithExitCodeOne)
 
 TEST_F(CertifyToolTest, BadInputIsOneLineAndExitCodeTwo)
 {
-  for (const std::string& arguments : {std::string("/nowhere.hdf5"), std::string(""), write("x.hdf5", example321()) + " --bound -1",
-                                       file("x.hdf5") + " --solver nobody"})
+  for (const std::string& arguments :
+       {std::string("/nowhere.hdf5"), std::string(""), write("x.hdf5", example321()) + " --bound -1",
+        file("x.hdf5") + " --solver nobody"})
   {
     const CommandResult result = runTool("certify", arguments);
     EXPECT_EQ(result.code, 2) << arguments;
@@ -117,5 +118,6 @@ TEST_F(CertifyToolTest, AThresholdOfFrictionOnAnIncline)
     EXPECT_EQ(bad.code, 2);
     EXPECT_EQ(lines(bad.errors), 1) << bad.errors;
   }
-  EXPECT_EQ(runTool("threshold", file("incline.yaml") + " --vary no.such --from 0 --to 1 --hold 'kinetic < 1'").code, 2);
+  EXPECT_EQ(runTool("threshold", file("incline.yaml") + " --vary no.such --from 0 --to 1 --hold 'kinetic < 1'").code,
+            2);
 }

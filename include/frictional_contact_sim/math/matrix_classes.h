@@ -7,9 +7,9 @@
  *   copositive    x^T A x >= 0 for every x >= 0; strictly: > 0 but for x = 0, and there is a solution for every b
  *                 (theorem 4.5); with b >= 0 on { x >= 0, A x >= 0, x^T A x = 0 } there is one for that b (theorem 4.6)
  *
- * Both are decided by all principal sub-matrices, so for small n only: minors by Schur complements, 2^n in all (Tsatsomeros,
- * Li 2000); A is copositive if and only if no principal sub-matrix of (A + A^T)/2 has a positive eigenvector with a
- * negative eigenvalue (Kaplan 2000). Neither test looks at more than 2^MOST_UNKNOWNS of them.
+ * Both are decided by all principal sub-matrices, so for small n only: minors by Schur complements, 2^n in all
+ * (Tsatsomeros, Li 2000); A is copositive if and only if no principal sub-matrix of (A + A^T)/2 has a positive
+ * eigenvector with a negative eigenvalue (Kaplan 2000). Neither test looks at more than 2^MOST_UNKNOWNS of them.
  *
  * Source: Cadoux (2009), section 4.1; Cottle, Pang, Stone (1992), theorems 3.3.7, 3.8.5, 3.8.6.
  */

@@ -12,14 +12,13 @@
  * the current point (Kelley's cutting planes), which also bounds s from above.
  *
  *   CERTIFIED    v was checked again in floating point with outward rounding-error bounds: margin >= 0; or, exact =
- *                false, it is so for a w that differs from the given one by at most ROUND_OFF_UNITS units of round-off of
- *                |H||v| + |w| in each row (a criterion without room, such as v = -v_0 where all that is outside moves as
- *                one rigid body, w = H v_0, cannot be told closer)
- *   REFUTED      no v has u_N >= 0 at all contacts, so no friction can help: a multiplier r_N >= 0, lambda with
- *                H_N^T r_N + G^T lambda = 0 and w_N.r_N + b.lambda < 0 was checked in the same way (Farkas); r = 0 where
- *                the bilateral rows contradict each other
- *   UNDECIDED    neither; the criterion is not necessary. criterion_violated says that a multiplier in L proves that no
- *                v satisfies it (remark 3.23 gives that in 2D only; outer facets give it in 3D as well)
+ *                false, it is so for a w that differs from the given one by at most ROUND_OFF_UNITS units of round-off
+ * of |H||v| + |w| in each row (a criterion without room, such as v = -v_0 where all that is outside moves as one rigid
+ * body, w = H v_0, cannot be told closer) REFUTED      no v has u_N >= 0 at all contacts, so no friction can help: a
+ * multiplier r_N >= 0, lambda with H_N^T r_N + G^T lambda = 0 and w_N.r_N + b.lambda < 0 was checked in the same way
+ * (Farkas); r = 0 where the bilateral rows contradict each other UNDECIDED    neither; the criterion is not necessary.
+ * criterion_violated says that a multiplier in L proves that no v satisfies it (remark 3.23 gives that in 2D only;
+ * outer facets give it in 3D as well)
  *
  * Round-off leaves z = H^T r + G^T lambda at 1e-16 instead of 0; "no v" then reads: none below |v|_inf =
  * excluded_below, which must exceed 1e6 R. With bilateral rows v satisfies G v + b = 0 to round-off; the margin is

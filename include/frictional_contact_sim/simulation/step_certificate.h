@@ -6,9 +6,8 @@
  * margin is the maximum of (3.37) with |v|_inf <= bound [m/s, rad/s]; its trend is published, and there is a warning
  * before a scene becomes infeasible:
  *
- *   closing   the same rows with every gap closed: u_N >= 0 in place of u_N >= -gap/dt. Where that is REFUTED, bodies run
- *             into each other that no velocity can keep apart; the gaps that are left last about
- *             dt margin/(-closing margin)
+ *   closing   the same rows with every gap closed: u_N >= 0 in place of u_N >= -gap/dt. Where that is REFUTED, bodies
+ * run into each other that no velocity can keep apart; the gaps that are left last about dt margin/(-closing margin)
  *   trend     the margin falls and, at the mean rate of the last checks, is zero within WARNING_TIME
  *
  * Only contacts with a row are seen: those that the motion of a step or two could close.

@@ -3,9 +3,9 @@
  * @file threshold.h
  * @brief For which values of one number of a scenario does something hold: bisection between what holds and what fails.
  *
- * A grid of values comes first, so that what is not monotone is seen as far as the grid shows it; then every place where
- * holding and failing meet is bisected. Each run is a whole simulation; one that fails (a step without an answer) does
- * not hold.
+ * A grid of values comes first, so that what is not monotone is seen as far as the grid shows it; then every place
+ * where holding and failing meet is bisected. Each run is a whole simulation; one that fails (a step without an answer)
+ * does not hold.
  *
  * What has to hold is a conjunction, "max_speed < 1e-6 and box.tilt < 0.1", of the quantities in quantityNames().
  */

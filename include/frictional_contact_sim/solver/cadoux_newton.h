@@ -12,8 +12,8 @@
  * convex problem). Piecewise affine in 2D (4.7.7): F is affine on the piece of the present point, and land() solves the
  * whole problem on it, without alpha and with what the inner solver has left undone,
  *   (I - P' + rho P' G W) dr = -(r - P(r - rho u~)) - rho P' mu e (F - s)       least-norm least squares
- * so that the method ends with the first step from the right piece, whatever the tolerance; the answer is judged as any.
- * Dense LU of the active rows; W explicit, dense or block-sparse. The inner solver is an argument. Frictionless
+ * so that the method ends with the first step from the right piece, whatever the tolerance; the answer is judged as
+ * any. Dense LU of the active rows; W explicit, dense or block-sparse. The inner solver is an argument. Frictionless
  * contacts are not in s.
  *
  * Source: Cadoux (2009), 4.7.5, table 5.6. Departures: rho_i = 1/lambda_max(W_ii) in (4.25), where the thesis has 1;

@@ -12,10 +12,10 @@
  *   A = [ W_NN - W_NT D, 2 W_NT, 0 ; W_TN - W_TT D, 2 W_TT, I ; D, -I, 0 ],  b = (q_N, q_T, 0),  D = diag(mu)
  * (here contact by contact, which is a permutation, and with each law's rows scaled by sqrt(rho_i)).
  *
- * form = stewart writes a planar contact as a spatial one with the two directions +-1: x = (r_N, b+, b-, s), y = (u_N, s +
- * u_T, s - u_T, mu r_N - b+ - b-). Its matrix is copositive, x^T A x = r^T W r, which (4.2) is not: where a solution exists
- * by the criterion of chapter 3, for w = 0 above all, Lemke's path cannot end on a ray (theorem 4.6; Cottle, Pang, Stone
- * 1992, 4.4.13). One unknown more a contact.
+ * form = stewart writes a planar contact as a spatial one with the two directions +-1: x = (r_N, b+, b-, s), y = (u_N,
+ * s + u_T, s - u_T, mu r_N - b+ - b-). Its matrix is copositive, x^T A x = r^T W r, which (4.2) is not: where a
+ * solution exists by the criterion of chapter 3, for w = 0 above all, Lemke's path cannot end on a ray (theorem 4.6;
+ * Cottle, Pang, Stone 1992, 4.4.13). One unknown more a contact.
  *
  * In 3D the cone is replaced by the polyhedral cone on K = facets directions d_k; a sliding direction between two of
  * them is wrong by up to pi/K. The problem is solved again with the directions of each sliding contact turned so that

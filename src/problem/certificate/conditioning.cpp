@@ -32,8 +32,8 @@ std::vector<Eigen::Index> contactRows(const std::vector<Law>& laws)
   return rows;
 }
 
-/// Independent rows up to which singular values are found by rotations, with all digits; beyond, from the eigenvalues of
-/// W, where a condition above 1e15 is not told from a lower rank.
+/// Independent rows up to which singular values are found by rotations, with all digits; beyond, from the eigenvalues
+/// of W, where a condition above 1e15 is not told from a lower rank.
 constexpr int MOST_ROTATED = 150;
 constexpr int MOST_SWEEPS = 40;
 

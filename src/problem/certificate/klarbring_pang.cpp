@@ -38,9 +38,8 @@ public:
     {
       const bool slips = cone.dimension > 1 && cone.friction > 0.0;
       for (int k = 0; k < (slips ? cone.dimension : 1); ++k)
-        column_[static_cast<size_t>(cone.row + k)] =
-            program_.addColumn(k == 0 ? 0.0 : -LinearProgram::INFINITE, LinearProgram::INFINITE,
-                               kinematics.w[cone.row + k] / speed_);
+        column_[static_cast<size_t>(cone.row + k)] = program_.addColumn(
+            k == 0 ? 0.0 : -LinearProgram::INFINITE, LinearProgram::INFINITE, kinematics.w[cone.row + k] / speed_);
       normals.push_back(column_[static_cast<size_t>(cone.row)]);
     }
     first_lambda_ = -1;
@@ -81,10 +80,7 @@ public:
   }
 
   /** The dual velocity: in the unit of v. */
-  Eigen::VectorXd velocity() const
-  {
-    return -program_.prices().head(kinematics_.H.cols()) * speed_ / height_;
-  }
+  Eigen::VectorXd velocity() const { return -program_.prices().head(kinematics_.H.cols()) * speed_ / height_; }
 
   void cut(const Eigen::VectorXd& r)
   {

@@ -220,9 +220,10 @@ UniquenessReport checkUniqueness(const DelassusProblem& problem, const Uniquenes
   }
   report.verdict = unique ? Uniqueness::UNIQUE_V : Uniqueness::UNKNOWN;
   if (!unique)
-    report.message = report.some_load_has_several ? "for some loads there are none or several solutions; not for this one"
-                                                    " alone is it known"
-                                                  : "no proof that two solutions have the same velocities";
+    report.message = report.some_load_has_several
+                         ? "for some loads there are none or several solutions; not for this one"
+                           " alone is it known"
+                         : "no proof that two solutions have the same velocities";
   else if (minors)
     report.message = "one solution for every load: all minors of the contacts' modes are positive";
   else if (report.contraction > 0.0)

@@ -24,7 +24,8 @@ namespace frictional_contact_sim
 {
 struct CertifyOptions
 {
-  double bound = 0.0;  ///< R of the margin [unit of v]; 0: 1e3 |w| over the contacts' |H|, and twice the certificate's |v|
+  double bound =
+      0.0;  ///< R of the margin [unit of v]; 0: 1e3 |w| over the contacts' |H|, and twice the certificate's |v|
   bool margin = true;  ///< false: stop at the verdict; the margin is then that of the first certificate
   bool conditioning = true;  ///< rank and condition
   bool klarbring_pang = false;  ///< theorem 3.1 and (3.34) too

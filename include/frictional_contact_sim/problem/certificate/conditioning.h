@@ -25,8 +25,8 @@ struct Conditioning
   bool computed() const { return rank >= 0; }
 };
 
-/** @param max_rows more rows or velocities than that are not computed. @throws std::invalid_argument unless M is positive
- * definite */
+/** @param max_rows more rows or velocities than that are not computed. @throws std::invalid_argument unless M is
+ * positive definite */
 Conditioning conditioning(const IncrementalProblem& problem, int max_rows = 1500);
 Conditioning conditioning(const DelassusProblem& problem, int max_rows = 1500);
 

@@ -5,14 +5,13 @@
  *
  *   s_i = |u_T,i|,  u = H v + w,  C(s) = { v' : H v' + w + E s in L*, G v' + b = 0 },  E s = mu_i s_i on normal rows
  *   fixed point   v minimises J(v') = 1/2 v'^T M v' + f^T v' over C(s): (M v + f).d >= 0 for every v + d in C(s)
- *   qualified     C(s) has an interior point: then an impulse r belongs to v, and v is a solution. It has one when s_i > 0
- *                 everywhere, or where some certificate has u_i in int K*_i wherever s_i = 0 (theorem 3.20); here the
- *                 largest margin of H v' + w + E s over v' is looked for, which finds every such point
- *   solution      r in L with r_i = 0 where a contact is open and on the edge opposite to the slip where it slides,
- *                 M v + f = H^T r + G^T lambda
+ *   qualified     C(s) has an interior point: then an impulse r belongs to v, and v is a solution. It has one when s_i
+ * > 0 everywhere, or where some certificate has u_i in int K*_i wherever s_i = 0 (theorem 3.20); here the largest
+ * margin of H v' + w + E s over v' is looked for, which finds every such point solution      r in L with r_i = 0 where
+ * a contact is open and on the edge opposite to the slip where it slides, M v + f = H^T r + G^T lambda
  *
- * Example 3.21: v = 0 is a fixed point, C(s) is a half-line without interior, and no r belongs to it; cones around K that
- * are refined show that an impulse would have to be larger than any number. So `least_impulse` is a lower bound of
+ * Example 3.21: v = 0 is a fixed point, C(s) is a half-line without interior, and no r belongs to it; cones around K
+ * that are refined show that an impulse would have to be larger than any number. So `least_impulse` is a lower bound of
  * sum r_N of every impulse that makes v a solution, and infinite where there is none.
  *
  * 2D and one-dimensional laws exactly, 3D by tangent planes (Kelley). DRY_FRICTION adds c |u| to J.

@@ -6,11 +6,11 @@
  *   value = min { w.r + b.lambda : r in L, H^T r + G^T lambda = 0, sum r_N = 1 }      (theorem 3.1: a solution exists
  *                                                                                      when value >= 0)
  *
- * r ranges over the self-stresses of the contacts. Where there are none (the set is empty, (3.34)) a solution exists for
- * every w: proved by a v with H v in int L*, G v = 0. The value is also the supremum of (3.36), that is of (3.37) for
- * R to infinity, so `lower` <= value <= `upper` come from two sides that are checked apart: a velocity with that margin,
- * an impulse r in L with that power and an error of equilibrium that is stated. L of 3D contacts is approximated from
- * outside by tangent planes where r leaves it (Kelley); in 2D one linear program is exact.
+ * r ranges over the self-stresses of the contacts. Where there are none (the set is empty, (3.34)) a solution exists
+ * for every w: proved by a v with H v in int L*, G v = 0. The value is also the supremum of (3.36), that is of (3.37)
+ * for R to infinity, so `lower` <= value <= `upper` come from two sides that are checked apart: a velocity with that
+ * margin, an impulse r in L with that power and an error of equilibrium that is stated. L of 3D contacts is
+ * approximated from outside by tangent planes where r leaves it (Kelley); in 2D one linear program is exact.
  *
  * Source: Klarbring, Pang (1998), theorem 4.1; Cadoux (2009), theorem 3.1, (3.34). BILATERAL laws count as rows of G,
  * DRY_FRICTION bounds r and takes no part.

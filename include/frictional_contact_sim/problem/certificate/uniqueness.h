@@ -5,18 +5,16 @@
  *
  * UNIQUE_V    every two solutions have the same velocities; shown island by island by one of
  *   no friction   v minimises a strictly convex function over a convex set
- *   contraction   W regular and  sqrt(lambda_max(W_TT) lambda_max(E^T W^-1 E)) < 1,  E = diag(mu_i) on normal rows, T the
- *                 tangential rows of contacts with friction, rows scaled contact by contact by sqrt(rho_i). Then F of
- *                 theorem 3.6 is a contraction: for two s the minima r of (3.13) have |W^1/2 dr| <= |W^-1/2 E ds| by
- *                 monotony, and |dF| <= |W_T dr|. (u, r) is unique too
- *   orientation   2D and one-dimensional laws: the law's graph is a piecewise linear image of R^d with four pieces a
- *                 contact (open, stick, slide right, slide left), two a one-dimensional law. Its map to q is a
+ *   contraction   W regular and  sqrt(lambda_max(W_TT) lambda_max(E^T W^-1 E)) < 1,  E = diag(mu_i) on normal rows, T
+ * the tangential rows of contacts with friction, rows scaled contact by contact by sqrt(rho_i). Then F of theorem 3.6
+ * is a contraction: for two s the minima r of (3.13) have |W^1/2 dr| <= |W^-1/2 E ds| by monotony, and |dF| <= |W_T
+ * dr|. (u, r) is unique too orientation   2D and one-dimensional laws: the law's graph is a piecewise linear image of
+ * R^d with four pieces a contact (open, stick, slide right, slide left), two a one-dimensional law. Its map to q is a
  *                 homeomorphism, so that there is exactly one (u, r) for every q, if and only if the minors
  *                     det W[stick: N, T; slide: rows N, columns N +- mu T]
- *                 of all choices of pieces are positive. For mu = 0 these are the principal minors of W_NN: the P property
- *                 (theorem 4.3). The matrix A of (4.2) itself is never a P-matrix, its last diagonal block is zero
- * MULTIPLE    two solutions with different v are known (the enumeration says so; nothing here does)
- * UNKNOWN     neither
+ *                 of all choices of pieces are positive. For mu = 0 these are the principal minors of W_NN: the P
+ * property (theorem 4.3). The matrix A of (4.2) itself is never a P-matrix, its last diagonal block is zero MULTIPLE
+ * two solutions with different v are known (the enumeration says so; nothing here does) UNKNOWN     neither
  *
  * Sources: Cadoux (2009), theorems 3.6, 4.3; Kuhn, Loewen (1987) and Scholtes (2012), theorem 2.3.7, for coherently
  * oriented piecewise affine maps with at most four pieces at every face of codimension two. The contraction is derived
