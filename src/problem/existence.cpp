@@ -26,6 +26,9 @@ constexpr int APPROACH_ITERATIONS = 2000;
 constexpr double EXCLUSION = 1e6;
 /// Columns up to which the nearest velocity to -w is found by an orthogonal factor, beyond by conjugate gradients.
 constexpr int DENSE_COLUMNS = 400;
+/// W - W^T relative to W: nothing at all, and what is taken as round-off of single precision and the like.
+constexpr double ROUND_OFF = 1e-12;
+constexpr double MOST_ASYMMETRY = 1e-3;
 /// Share of the multipliers' sum, which is one, that counts as not zero.
 constexpr double BINDS = 1e-9;
 /// Violation of a cone at a linear program's solution that is worth another facet, in the program's units.
@@ -415,10 +418,19 @@ ExistenceReport checkExistence(const DelassusProblem& problem, const ExistenceOp
 {
   validate(problem);
   options.validate();
-  const SparseRows W = problem.W.toSparse();
+  SparseRows W = problem.W.toSparse();
+  const double defect = delassusDefect(W);
+  const bool repaired = defect > ROUND_OFF && defect <= MOST_ASYMMETRY;
+  if (repaired)
+    W = (0.5 * (W + SparseRows(W.transpose()))).eval();
   const ContactKinematics kinematics = collectKinematics(W, problem.q, problem.laws, nullptr, nullptr);
   ExistenceReport report = Criterion(kinematics, options).run();
-  if (report.verdict == Existence::CERTIFIED && !isDelassusMatrix(W))
+  if (repaired)
+  {
+    report.exact = false;
+    report.message += "; of the symmetric part of W, which is not symmetric";
+  }
+  if (report.verdict == Existence::CERTIFIED && defect > MOST_ASYMMETRY)
   {
     report.verdict = Existence::UNDECIDED;
     report.message = "W is not symmetric and positive semi-definite: the criterion proves nothing";

@@ -13,7 +13,7 @@ namespace frictional_contact_sim
 namespace
 {
 template <typename Problem>
-IslandCertificate certifyIsland(const Problem& problem, const CertifyOptions& options)
+IslandCertificate judgeIsland(const Problem& problem, const CertifyOptions& options)
 {
   IslandCertificate result;
   ExistenceOptions existence = options.existence;
@@ -22,33 +22,34 @@ IslandCertificate certifyIsland(const Problem& problem, const CertifyOptions& op
   result.existence = checkExistence(problem, existence);
   result.margin = result.existence.margin;
   result.upper_bound = result.existence.upper_bound;
-  result.bound = options.bound > 0.0 ? options.bound : result.existence.velocity_bound;
-  if (options.margin && !problem.laws.empty())
-  {
-    const Eigen::VectorXd& v = result.existence.v;
-    if (options.bound == 0.0 && v.size() > 0 && result.existence.margin >= 0.0)
-      result.bound = std::max(result.bound, 2.0 * v.lpNorm<Eigen::Infinity>());
-    existence.velocity_bound = result.bound;
-    existence.maximise = true;
-    const ExistenceReport best = checkExistence(problem, existence);
-    result.margin = best.margin;
-    result.upper_bound = best.upper_bound;
-    // A maximum that is found is a certificate as well; what limits it is named where nothing is refuted.
-    const bool proves = result.existence.verdict == Existence::UNDECIDED && best.verdict != Existence::UNDECIDED;
-    if (proves || (best.verdict == Existence::CERTIFIED && best.exact && !result.existence.exact))
-      result.existence = best;
-    else if (result.existence.verdict != Existence::REFUTED)
-    {
-      result.existence.blocking = best.blocking;
-      result.existence.blocking_bilaterals = best.blocking_bilaterals;
-    }
-    result.existence.rounds += best.rounds;
-  }
+  result.bound = result.existence.velocity_bound;
+  if (result.existence.v.size() > 0 && result.existence.margin >= 0.0)
+    result.bound = std::max(result.bound, 2.0 * result.existence.v.template lpNorm<Eigen::Infinity>());
   if (options.conditioning)
     result.conditioning = conditioning(problem, options.max_rows);
   if (options.klarbring_pang)
     result.klarbring_pang = klarbringPang(problem);
   return result;
+}
+
+template <typename Problem>
+void maximiseMargin(const Problem& problem, const CertifyOptions& options, double bound, IslandCertificate& result)
+{
+  ExistenceOptions existence = options.existence;
+  existence.velocity_bound = result.bound = bound;
+  existence.maximise = true;
+  const ExistenceReport best = checkExistence(problem, existence);
+  result.margin = best.margin;
+  result.upper_bound = best.upper_bound;
+  // A maximum that is found is a certificate as well; what limits it is named where nothing is refuted.
+  const bool proves = result.existence.verdict == Existence::UNDECIDED && best.verdict != Existence::UNDECIDED;
+  if (proves || (best.verdict == Existence::CERTIFIED && best.exact && !result.existence.exact))
+    result.existence = best;
+  else if (result.existence.verdict != Existence::REFUTED)
+  {
+    result.existence.blocking = best.blocking;
+    result.existence.blocking_bilaterals = best.blocking_bilaterals;
+  }
 }
 
 /** The island's numbers of laws and bilateral rows as those of the whole problem. */
@@ -120,9 +121,21 @@ Certificate certifyAll(const Problem& problem, const CertifyOptions& options, in
   result.v.setZero(columns);
   result.margin = std::numeric_limits<double>::infinity();
   int worst = -1;
-  for (auto& part : kinematicIslands(problem))
+  auto parts = kinematicIslands(problem);
+  std::vector<IslandCertificate> judged;
+  double bound = options.bound;  // one R for all islands, so that their margins compare
+  for (const auto& part : parts)
   {
-    IslandCertificate island = certifyIsland(part.problem, options);
+    judged.push_back(judgeIsland(part.problem, options));
+    if (options.bound == 0.0)
+      bound = std::max(bound, judged.back().bound);
+  }
+  for (size_t i = 0; i < parts.size(); ++i)
+  {
+    auto& part = parts[i];
+    IslandCertificate& island = judged[i];
+    if (options.margin && !part.problem.laws.empty())
+      maximiseMargin(part.problem, options, bound, island);
     island.laws = std::move(part.laws);
     island.bilaterals = std::move(part.bilaterals);
     island.velocities = std::move(part.velocities);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace frictional_contact_sim
 {
 namespace
 {
-/// Of W - W^T and of negative eigenvalues (times the number of rows), relative to the largest entry of W.
-constexpr double ASYMMETRY = 1e-9;
+/// Negative eigenvalues of W, over rows and the largest entry, that count as round-off of who wrote it.
+constexpr double INDEFINITE = 1e-8;
 
 /** Rows of laws that are not BILATERAL. */
 std::vector<Eigen::Index> contactRows(const std::vector<Law>& laws)
@@ -135,7 +136,7 @@ Conditioning conditioning(const DelassusProblem& problem, int max_rows)
   return fromSpectrum(spectrum.eigenvalues(), count, DBL_EPSILON * static_cast<double>(count), 1.0);
 }
 
-bool isDelassusMatrix(const SparseRows& W)
+double delassusDefect(const SparseRows& W)
 {
   const SparseRows mirror = W.transpose();
   const SparseRows difference = W - mirror;
@@ -144,14 +145,15 @@ bool isDelassusMatrix(const SparseRows& W)
     largest = std::max(largest, std::abs(W.valuePtr()[k]));
   for (Eigen::Index k = 0; k < difference.nonZeros(); ++k)
     asymmetry = std::max(asymmetry, std::abs(difference.valuePtr()[k]));
-  if (asymmetry > ASYMMETRY * largest)
-    return false;
-  // A shift by more than that asymmetry makes what is semi-definite definite.
+  if (largest == 0.0)
+    return 0.0;
+  asymmetry /= largest;
+  // Such a shift makes what is semi-definite, but for round-off, definite.
   const Eigen::SparseMatrix<double> symmetric = 0.5 * (W + mirror);
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
-  factor.setShift(static_cast<double>(W.rows()) * ASYMMETRY * largest);
+  factor.setShift(static_cast<double>(W.rows()) * std::max(INDEFINITE, asymmetry) * largest);
   factor.compute(symmetric);
-  return W.rows() == 0 || largest == 0.0 || factor.info() == Eigen::Success;
+  return factor.info() == Eigen::Success ? asymmetry : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace frictional_contact_sim

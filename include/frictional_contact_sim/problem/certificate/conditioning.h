@@ -30,7 +30,10 @@ struct Conditioning
 Conditioning conditioning(const IncrementalProblem& problem, int max_rows = 1500);
 Conditioning conditioning(const DelassusProblem& problem, int max_rows = 1500);
 
-/** @brief Symmetric and positive semi-definite, to the round-off of who wrote it: W = H M^-1 H^T for some H and M. */
-bool isDelassusMatrix(const SparseRows& W);
+/**
+ * @brief How far W is from H M^-1 H^T for some H and M, relative to its largest entry: the largest entry of W - W^T, or
+ * infinite where the symmetric part has an eigenvalue below -rows max(1e-8, that).
+ */
+double delassusDefect(const SparseRows& W);
 
 }  // namespace frictional_contact_sim
