@@ -29,6 +29,7 @@ constexpr int DENSE_COLUMNS = 400;
 /// W - W^T relative to W: nothing at all, and what is taken as round-off of single precision and the like.
 constexpr double ROUND_OFF = 1e-12;
 constexpr double MOST_ASYMMETRY = 1e-3;
+constexpr double LARGEST_BOUND = 1e6;  ///< of v in a program's units
 /// Share of the multipliers' sum, which is one, that counts as not zero.
 constexpr double BINDS = 1e-9;
 /// Violation of a cone at a linear program's solution that is worth another facet, in the program's units.
@@ -75,6 +76,8 @@ public:
       bound_ = count > 0 && speed > 0.0 ? 1e3 * speed / std::exp(logarithms / count) : 1.0;
     units_.height = height > 0.0 ? height : 1.0;
     units_.velocity = speed > 0.0 ? speed : bound_ * units_.height;
+    // Where R is far above what moves outside the program's numbers must still be of one size.
+    units_.velocity = std::max(units_.velocity, bound_ * units_.height / LARGEST_BOUND);
     report_.velocity_bound = bound_;
   }
 

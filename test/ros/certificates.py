@@ -65,7 +65,7 @@ class CertificatesTest(unittest.TestCase):
         self.assertEqual(refuted[-1].margin, self.reports[-1].existence_margin)
         self.assertTrue(node_runner.wait_until(self.red))
         for place in self.red():
-            self.assertAlmostEqual(0.05, abs(place.x), delta=0.002)
+            self.assertAlmostEqual(0.025, abs(place.x), delta=0.002)
         answer = self.certify(0.0, False)
         self.assertEqual(StepReport.REFUTED, answer.existence)
         self.assertEqual(sorted(refuted[-1].blocking_contacts), sorted(answer.blocking_contacts))
