@@ -249,9 +249,15 @@ void fillStepReport(const StepSummary& summary, double real_time_factor, const r
   message.bilateral_violation = summary.bilateral_violation;
   message.max_penetration = summary.max_penetration;
   const StepCertificate& certificate = summary.certificate;
-  message.existence = certificate.checked ? toMessage(certificate.existence) : StepReport::NOT_CHECKED;
-  message.existence_margin = certificate.checked ? certificate.margin : 0.0;
-  message.uniqueness = certificate.checked ? toMessage(certificate.uniqueness) : StepReport::NOT_CHECKED;
+  message.existence = StepReport::NOT_CHECKED;
+  message.uniqueness = StepReport::NOT_CHECKED;
+  message.existence_margin = 0.0;
+  if (certificate.checked)
+  {
+    message.existence = toMessage(certificate.existence);
+    message.existence_margin = certificate.margin;
+    message.uniqueness = toMessage(certificate.uniqueness);
+  }
   message.kinetic = summary.energy.kinetic;
   message.potential = summary.energy.potential;
   message.actuators = summary.energy.actuators;

@@ -149,7 +149,8 @@ RunRecord recordRun(const Scenario& scenario, const std::function<void(double)>&
       ++record.checked;
       record.certified += report.certificate.existence == Existence::CERTIFIED;
       record.refuted += report.certificate.existence == Existence::REFUTED;
-      record.least_margin = std::min(record.least_margin, report.certificate.margin);
+      if (!report.certificate.islands.empty())
+        record.least_margin = std::min(record.least_margin, report.certificate.margin);
     }
     if (!converged)
       fail("step " + std::to_string(report.step));
@@ -163,7 +164,7 @@ RunRecord recordRun(const Scenario& scenario, const std::function<void(double)>&
     if (progress && step % 64 == 0)
       progress(static_cast<double>(step) / static_cast<double>(steps));
   }
-  if (record.checked == 0)
+  if (!std::isfinite(record.least_margin))  // nothing touched
     record.least_margin = 0.0;
   found["kinetic"] = simulator.report().energy.kinetic;
   found["friction"] = simulator.report().energy.friction;

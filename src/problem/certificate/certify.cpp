@@ -104,9 +104,12 @@ std::string describe(const Certificate& certificate, const IslandCertificate* wo
   if (worst == nullptr)
     return "no contact and no other row: nothing restricts the velocities";
   if (certificate.existence == Existence::CERTIFIED)
-    return certificate.exact ? "a solution exists: a velocity keeps every contact in its dual cone"
-                             : "a solution exists: a velocity keeps every contact on or in its dual cone, to round-off "
-                               "of w";
+  {
+    for (const IslandCertificate& island : certificate.islands)
+      if (!island.existence.exact)
+        return "a solution exists: " + island.existence.message;
+    return "a solution exists: a velocity keeps every contact in its dual cone";
+  }
   return worst->existence.message;
 }
 
