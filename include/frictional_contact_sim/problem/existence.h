@@ -25,8 +25,8 @@
  * reduced by what the exact correction can cost, and redundant rows are taken as consistent. DRY_FRICTION rows bound r
  * and never hinder existence (they add a bounded convex term to the energy). For a local problem W stands for H and q
  * for w: range W = range H when W = H M^-1 H^T. A W that is not symmetric to 1e-3 of its largest entry, or not positive
- * semi-definite, is no such matrix; then nothing is CERTIFIED (REFUTED needs no property of W). Up to there its symmetric
- * part is judged, exact = false, and the message says so.
+ * semi-definite, is no such matrix; then nothing is CERTIFIED (REFUTED needs no property of W). Up to there its
+ * symmetric part is judged, exact = false, and the message says so.
  *
  * Source: Cadoux (2009), section 3.5 and (3.35)-(3.38); theorem 3.1 is Klarbring and Pang's. The thesis prints + e s in
  * (3.35)-(3.37) and means - e s, as in (3.36).

@@ -52,7 +52,7 @@ struct StepCertificate
   Uniqueness uniqueness = Uniqueness::UNKNOWN;
   bool exact = true;
   double margin = 0.0;  ///< [m/s]
-  double margin_rate = 0.0;  ///< mean over the last checks [m/s^2]
+  double margin_rate = 0.0;  ///< MarginTrend::rate() [m/s^2]
   double bound = 0.0;  ///< R [m/s, rad/s]
   int rows = 0;
   int rank = -1;
@@ -78,7 +78,7 @@ public:
   void clear() { count_ = 0; }
   /** @brief Of a check at `time` [s]; one that is not later than the last starts anew. */
   void add(double time, double margin);
-  /** @brief Slope of the straight line nearest to the last checks [m/s^2], 0 for fewer than three. */
+  /** @brief Median of the slopes between the last checks, which a jump does not move [m/s^2]; 0 for fewer than five. */
   double rate() const;
 
 private:

@@ -29,8 +29,8 @@ struct FixedPointCheckOptions
   double tolerance = 1e-7;  ///< on velocities and momenta, relative to the largest of the problem [-], in (0, 1); on
                             ///< momenta 2e-4 at least where C(s) has no interior
   int max_rounds = 60;  ///< linear programs of each question, >= 1
-  double runaway = 1e4;  ///< sum r_N above so many times |M v|, |f| over |H| counts as no impulse at all, which the simplex
-                         ///< tolerance cannot tell from more [-], > 1
+  double runaway = 1e4;  ///< sum r_N above so many times |M v|, |f| over |H| counts as no impulse at all, which the
+                         ///< simplex tolerance cannot tell from more [-], > 1
 
   /** @throws std::invalid_argument naming the field and its value. */
   void validate() const;
