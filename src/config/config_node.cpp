@@ -1,6 +1,8 @@
 #include "frictional_contact_sim/config/config_node.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "frictional_contact_sim/config/nearest_name.h"
@@ -220,6 +222,75 @@ std::string ConfigNode::folder() const
 {
   const std::filesystem::path file = document_->notation == ConfigNotation::FILE ? document_->source : "";
   return std::filesystem::absolute(file.empty() ? "." : file.parent_path() / ".").lexically_normal().string();
+}
+
+namespace
+{
+/** The element of a list by index or name; nullptr where there is none. */
+ConfigValue* elementOf(ConfigValue& list, const std::string& part)
+{
+  const bool is_index = !part.empty() && part.size() < 9 && part.find_first_not_of("0123456789") == std::string::npos;
+  if (is_index && static_cast<size_t>(std::stoi(part)) < list.items.size())
+    return &list.items[static_cast<size_t>(std::stoi(part))];
+  for (ConfigValue& item : list.items)
+    for (const ConfigEntry& entry : item.entries)
+      if (entry.key == "name" && entry.value.text == part)
+        return &item;
+  return nullptr;
+}
+}  // namespace
+
+ConfigNode ConfigNode::changed(const std::string& path, double value) const
+{
+  const auto document = std::make_shared<ConfigDocument>(*document_);
+  ConfigValue* place = &document->root;
+  const auto refuse = [&](const std::string& reason)
+  { throw ConfigError(document_->source + ": '" + path + "': " + reason); };
+  for (size_t begin = 0; begin <= path.size();)
+  {
+    const size_t end = std::min(path.find('.', begin), path.size());
+    const std::string part = path.substr(begin, end - begin);
+    begin = end + 1;
+    if (part.empty())
+      refuse("found an empty name, expected keys with dots between");
+    if (place->kind == ConfigValue::Kind::LIST)
+    {
+      ConfigValue* element = elementOf(*place, part);
+      if (element == nullptr)
+        refuse("found no element '" + part + "', expected an index below " + std::to_string(place->items.size()) +
+               " or the name of one");
+      place = element;
+      continue;
+    }
+    if (place->kind == ConfigValue::Kind::SCALAR)
+      refuse("found " + place->shown + " on the way to '" + part + "', expected a map or a list");
+    place->kind = ConfigValue::Kind::MAP;
+    ConfigValue* next = nullptr;
+    for (ConfigEntry& entry : place->entries)
+      if (entry.key == part)
+        next = &entry.value;
+    if (next == nullptr)
+    {
+      place->entries.push_back({part, place->line, {}});
+      next = &place->entries.back().value;
+      next->line = place->line;
+    }
+    place = next;
+  }
+  if (place->kind == ConfigValue::Kind::LIST || place->kind == ConfigValue::Kind::MAP)
+    refuse("found " + place->shown + ", expected a number");
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.17g", value);
+  place->kind = ConfigValue::Kind::SCALAR;
+  place->literal = text;
+  place->shown = "'" + place->literal + "'";
+  place->text = place->literal;
+  place->number = value;
+  place->boolean.reset();
+  place->integer.reset();
+  if (value == std::round(value) && std::abs(value) < 1e9)
+    place->integer = static_cast<int>(value);
+  return ConfigNode(document);
 }
 
 std::string ConfigNode::stem() const

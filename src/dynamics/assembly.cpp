@@ -65,7 +65,10 @@ void StepAssembly::assembleRows(const StepContext& context)
 {
   sink_.clear(velocities_);
   for (const std::unique_ptr<RowSource>& source : sources_)
+  {
+    sink_.setOrigin({source->name(), -1, -1});
     source->addRows(context, sink_);
+  }
   joint_rows_ = sink_.rows();
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
@@ -73,7 +76,10 @@ void StepAssembly::assembleRows(const StepContext& context)
     for (size_t j = 0; j < joints.size(); ++j)
       if (velocitySize(joints[j].type) == 1)
         for (const std::unique_ptr<RowSource>& source : sources_)
+        {
+          sink_.setOrigin({source->name(), static_cast<int>(b), static_cast<int>(j)});
           source->addJointRows(context, static_cast<int>(b), static_cast<int>(j), sink_);
+        }
   }
   bias_rounds_ = 0;
 }
@@ -309,6 +315,27 @@ void StepAssembly::accept(const StepContext& context, const StepAnswer& answer)
   for (int k = 0; k < problem_.bilaterals(); ++k)
     if (double* memory = sink_.bilateralRecords()[k].memory)
       *memory = answer.solution.lambda[k];
+}
+
+const ContactPoint* StepAssembly::contactOf(const StepContext& context, int law) const
+{
+  for (const std::unique_ptr<RowSource>& source : sources_)
+    if (const ContactPoint* point = source->contactOf(context, law))
+      return point;
+  return nullptr;
+}
+
+Eigen::VectorXd StepAssembly::closedOffsets() const
+{
+  Eigen::VectorXd w = problem_.w;
+  int row = 0;
+  for (const Law& law : problem_.laws)
+  {
+    if (law.isOneSided())
+      w[row] = std::min(w[row], sink_.rowRecords()[static_cast<size_t>(row)].base_velocity);
+    row += law.dimension();
+  }
+  return w;
 }
 
 double StepAssembly::bilateralViolation() const

@@ -302,6 +302,14 @@ Again ContactRows::lookAhead(const StepContext& context, const Solution& solutio
   return Again::NEVER;
 }
 
+const ContactPoint* ContactRows::contactOf(const StepContext& context, int law) const
+{
+  for (const ContactRow& row : rows_)
+    if (row.law == law)
+      return &(*context.points)[row.point];
+  return nullptr;
+}
+
 void ContactRows::markActing(std::vector<char>& bodies) const
 {
   for (const ContactState& contact : contacts_)

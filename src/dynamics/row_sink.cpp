@@ -13,6 +13,9 @@ void RowSink::clear(int velocities)
   w_.clear();
   b_.clear();
   laws_.clear();
+  origin_ = {};
+  origins_.clear();
+  bilateral_origins_.clear();
   units_.clear();
   bilateral_units_.clear();
   auxiliary_mass_.clear();
@@ -31,6 +34,7 @@ void RowSink::endLaw(const Law& law, const RowUnit& unit)
 {
   laws_.push_back(law);
   units_.push_back(unit);
+  origins_.push_back(origin_);
 }
 
 int RowSink::addAuxiliary(double mass)
@@ -42,6 +46,7 @@ int RowSink::addAuxiliary(double mass)
 void RowSink::endBilateral(double b, const RowRecord& record, const RowUnit& unit)
 {
   bilateral_units_.push_back(unit);
+  bilateral_origins_.push_back(origin_);
   g_.endRow();
   b_.push_back(b);
   bilateral_records_.push_back(record);

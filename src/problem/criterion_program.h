@@ -9,7 +9,7 @@
  */
 #include <vector>
 
-#include "existence_certificate.h"
+#include "contact_kinematics.h"
 #include "linear_program.h"
 
 namespace frictional_contact_sim

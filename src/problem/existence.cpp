@@ -1,6 +1,9 @@
 #include "frictional_contact_sim/problem/existence.h"
 
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/QR>
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -8,6 +11,7 @@
 #include "criterion_program.h"
 #include "existence_certificate.h"
 #include "frictional_contact_sim/math/cone.h"
+#include "frictional_contact_sim/problem/certificate/conditioning.h"
 
 namespace frictional_contact_sim
 {
@@ -20,6 +24,14 @@ constexpr double ENOUGH = 1.0;
 constexpr int APPROACH_ITERATIONS = 2000;
 /// A proof of impossibility must hold for velocities this many times R.
 constexpr double EXCLUSION = 1e6;
+/// Columns up to which the nearest velocity to -w is found by an orthogonal factor, beyond by conjugate gradients.
+constexpr int DENSE_COLUMNS = 400;
+/// W - W^T relative to W: nothing at all, and what is taken as round-off of single precision and the like.
+constexpr double ROUND_OFF = 1e-12;
+constexpr double MOST_ASYMMETRY = 1e-3;
+constexpr double LARGEST_BOUND = 1e6;  ///< of v in a program's units
+/// Share of the multipliers' sum, which is one, that counts as not zero.
+constexpr double BINDS = 1e-9;
 /// Violation of a cone at a linear program's solution that is worth another facet, in the program's units.
 constexpr double CUT_TOLERANCE = 1e-10;
 
@@ -64,22 +76,29 @@ public:
       bound_ = count > 0 && speed > 0.0 ? 1e3 * speed / std::exp(logarithms / count) : 1.0;
     units_.height = height > 0.0 ? height : 1.0;
     units_.velocity = speed > 0.0 ? speed : bound_ * units_.height;
+    // Where R is far above what moves outside the program's numbers must still be of one size.
+    units_.velocity = std::max(units_.velocity, bound_ * units_.height / LARGEST_BOUND);
     report_.velocity_bound = bound_;
   }
 
   ExistenceReport run()
   {
     consider(Eigen::VectorXd::Zero(kinematics_.H.cols()));
+    if (!decided())
+      followSurroundings();
     if (!decided() && !options_.maximise)
       approachCones();
-    if (!decided() && curved_ && !options_.maximise)
+    if (!decided() && curved_ && (!options_.maximise || report_.margin < 0.0))
       insideCones();
-    if (!decided())
+    if (!decided() && !refuteBilaterals())
       outsideCones();
-    if (report_.margin >= 0.0)
-      certify();
-    else
-      refute();
+    if (report_.verdict != Existence::REFUTED)
+    {
+      if (report_.margin >= 0.0)
+        certify();
+      else
+        refute();
+    }
     return std::move(report_);
   }
 
@@ -91,12 +110,53 @@ private:
     const double missing = correction_.apply(v);
     // Contradicting bilateral rows leave a correction that no velocity makes.
     const bool consistent = missing <= 1e-6 * (bound_ + v.norm());
-    const double margin = consistent ? verifiedMargin(kinematics_, v, missing) : -INFINITE;
-    if (margin > report_.margin || report_.v.size() == 0)
+    if (options_.maximise && v.lpNorm<Eigen::Infinity>() > bound_ * (1.0 + 1e-9))
+      return;
+    double margin = consistent ? verifiedMargin(kinematics_, v, missing) : -INFINITE;
+    bool exact = true;
+    double change = 0.0;
+    if (margin < 0.0 && consistent && roundOffMissing(kinematics_, v, missing, change) <= ROUND_OFF_UNITS)
     {
-      report_.margin = margin;
-      report_.v = v;
+      exact = false;
+      margin = 0.0;
     }
+    const bool better = margin > report_.margin || (exact && !report_.exact && margin >= report_.margin);
+    if (!better && report_.v.size() > 0)
+      return;
+    report_.margin = margin;
+    report_.v = v;
+    report_.exact = exact;
+    report_.perturbation = exact ? 0.0 : change;
+  }
+
+  /** The velocity nearest to that of the surroundings: H v = -w where they move as one rigid body (section 3.4.6). */
+  void followSurroundings()
+  {
+    const auto rows = kinematics_.H.rows();
+    if (rows == 0 || kinematics_.w.isZero(0.0))
+      return;
+    SparseRows stacked(rows + kinematics_.E.rows(), kinematics_.H.cols());
+    stacked.topRows(rows) = kinematics_.H;
+    stacked.bottomRows(kinematics_.E.rows()) = kinematics_.E;
+    Eigen::VectorXd right(stacked.rows());
+    right << -kinematics_.w, -kinematics_.b;
+    Eigen::VectorXd v;
+    if (stacked.cols() <= DENSE_COLUMNS)
+    {
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor{Eigen::MatrixXd(stacked)};
+      v = factor.solve(right);
+      v += factor.solve(right - stacked * v);
+    }
+    else
+    {
+      const Eigen::SparseMatrix<double> columns = stacked;
+      Eigen::LeastSquaresConjugateGradient<Eigen::SparseMatrix<double>> nearest(columns);
+      nearest.setTolerance(DBL_EPSILON);
+      nearest.setMaxIterations(APPROACH_ITERATIONS);
+      v = nearest.solve(right);
+    }
+    if (v.allFinite())
+      consider(v);
   }
 
   void addPolygon(CriterionProgram& program, double widening) const
@@ -188,18 +248,17 @@ private:
       consider(program.v());
       if (program.s() < ENOUGH || options_.maximise)
         report_.upper_bound = program.s() * units_.velocity;
-      Eigen::VectorXd lambda;
-      program.multipliers(report_.multiplier, lambda);
+      program.multipliers(report_.multiplier, report_.bilateral_multiplier);
       blocking();
-      if (decided() || (program.s() < 0.0 && excluded(lambda) && !options_.maximise) || addCuts(program) == 0 ||
+      if (decided() || (program.s() < 0.0 && excluded() && !options_.maximise) || addCuts(program) == 0 ||
           report_.upper_bound - report_.margin <= options_.gap * std::abs(report_.upper_bound))
         return;
     }
   }
 
-  bool excluded(const Eigen::VectorXd& lambda)
+  bool excluded()
   {
-    report_.excluded_below = verifiedExclusion(kinematics_, report_.multiplier, lambda);
+    report_.excluded_below = verifiedExclusion(kinematics_, report_.multiplier, report_.bilateral_multiplier);
     report_.criterion_violated = report_.excluded_below >= EXCLUSION * bound_;
     return report_.criterion_violated;
   }
@@ -207,9 +266,45 @@ private:
   void blocking()
   {
     report_.blocking.clear();
+    report_.blocking_bilaterals.clear();
     for (const DualCone& cone : kinematics_.cones)
-      if (report_.multiplier[cone.row] > 1e-9)
+      if (report_.multiplier[cone.row] > BINDS)
         report_.blocking.push_back(cone.law);
+    for (Eigen::Index j = 0; j < report_.bilateral_multiplier.size(); ++j)
+      if (std::abs(report_.bilateral_multiplier[j]) > BINDS)
+      {
+        const auto k = static_cast<size_t>(j);
+        if (kinematics_.bilateral_law[k] >= 0)
+          report_.blocking.push_back(kinematics_.bilateral_law[k]);
+        else
+          report_.blocking_bilaterals.push_back(kinematics_.bilateral_row[k]);
+      }
+    std::sort(report_.blocking.begin(), report_.blocking.end());
+  }
+
+  /** Bilateral rows that contradict each other leave no velocity at all. */
+  bool refuteBilaterals()
+  {
+    if (kinematics_.E.rows() == 0)
+      return false;
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(kinematics_.H.rows());
+    const Eigen::VectorXd lambda = contradiction(kinematics_);
+    const double excluded_below = verifiedExclusion(kinematics_, r, lambda);
+    if (excluded_below < EXCLUSION * bound_)
+      return false;
+    setRefuted(r, lambda, excluded_below, "the bilateral rows contradict each other");
+    return true;
+  }
+
+  void setRefuted(const Eigen::VectorXd& r, const Eigen::VectorXd& lambda, double excluded_below, const char* message)
+  {
+    report_.verdict = Existence::REFUTED;
+    report_.criterion_violated = true;
+    report_.excluded_below = excluded_below;
+    report_.multiplier = r;
+    report_.bilateral_multiplier = lambda;
+    blocking();
+    report_.message = message;
   }
 
   int addCuts(CriterionProgram& program) const
@@ -233,16 +328,18 @@ private:
   void certify()
   {
     report_.verdict = Existence::CERTIFIED;
+    report_.criterion_violated = false;
     report_.multiplier.resize(0);
+    report_.bilateral_multiplier.resize(0);
     report_.message = kinematics_.cones.empty() ? "nothing restricts the velocities"
-                                                : "a velocity inside the dual cones was verified";
+                      : report_.exact           ? "a velocity inside the dual cones was verified"
+                                      : "a velocity on the boundary of the dual cones was verified to round-off of w";
   }
 
   /** Without friction the criterion is necessary; u_N >= 0 everywhere is necessary for any friction. */
   void refute()
   {
     const std::string obstacle = report_.message;
-    const Eigen::VectorXd multiplier = report_.multiplier;
     ContactKinematics normals = kinematics_;
     for (DualCone& cone : normals.cones)
       cone.friction = 0.0;
@@ -257,12 +354,7 @@ private:
       const double excluded_below = verifiedExclusion(normals, r, lambda);
       if (excluded_below >= EXCLUSION * bound_)
       {
-        report_.verdict = Existence::REFUTED;
-        report_.criterion_violated = true;
-        report_.excluded_below = excluded_below;
-        report_.multiplier = r;
-        blocking();
-        report_.message = "no velocity keeps all contacts from penetrating";
+        setRefuted(r, lambda, excluded_below, "no velocity keeps all contacts from penetrating");
         return;
       }
     }
@@ -271,6 +363,7 @@ private:
     else
     {
       report_.multiplier.resize(0);
+      report_.bilateral_multiplier.resize(0);
       report_.message = obstacle.empty() ? "no velocity inside the dual cones was found" : obstacle;
     }
   }
@@ -284,45 +377,6 @@ private:
   bool curved_ = false;
 };
 
-void copyRow(const SparseRows& matrix, int row, int target, std::vector<Eigen::Triplet<double>>& entries)
-{
-  for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-    entries.emplace_back(target, static_cast<int>(entry.col()), entry.value());
-}
-
-/** BILATERAL laws become rows of E, DRY_FRICTION rows restrict nothing. */
-ContactKinematics collect(const SparseRows& H, const Eigen::VectorXd& w, const std::vector<Law>& laws,
-                          const SparseRows* G, const Eigen::VectorXd* b)
-{
-  ContactKinematics kinematics;
-  kinematics.H = H;
-  kinematics.w = w;
-  std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> offsets;
-  int row = 0;
-  for (size_t i = 0; i < laws.size(); ++i)
-  {
-    const Law& law = laws[i];
-    if (law.isOneSided())
-      kinematics.cones.push_back({static_cast<int>(i), row, law.dimension(), law.isCoulomb() ? law.coefficient : 0.0});
-    else if (law.type == LawType::BILATERAL)
-    {
-      copyRow(H, row, static_cast<int>(offsets.size()), entries);
-      offsets.push_back(w[row]);
-    }
-    row += law.dimension();
-  }
-  for (int j = 0; G != nullptr && j < G->rows(); ++j)
-  {
-    copyRow(*G, j, static_cast<int>(offsets.size()), entries);
-    offsets.push_back((*b)[j]);
-  }
-  const auto count = static_cast<Eigen::Index>(offsets.size());
-  kinematics.E.resize(count, H.cols());
-  kinematics.E.setFromTriplets(entries.begin(), entries.end());
-  kinematics.b = Eigen::Map<const Eigen::VectorXd>(offsets.data(), count);
-  return kinematics;
-}
 }  // namespace
 
 const char* toString(Existence existence)
@@ -359,7 +413,7 @@ ExistenceReport checkExistence(const IncrementalProblem& problem, const Existenc
 {
   validate(problem);
   options.validate();
-  const ContactKinematics kinematics = collect(problem.H, problem.w, problem.laws, &problem.G, &problem.b);
+  const ContactKinematics kinematics = collectKinematics(problem.H, problem.w, problem.laws, &problem.G, &problem.b);
   return Criterion(kinematics, options).run();
 }
 
@@ -367,8 +421,24 @@ ExistenceReport checkExistence(const DelassusProblem& problem, const ExistenceOp
 {
   validate(problem);
   options.validate();
-  const ContactKinematics kinematics = collect(problem.W.toSparse(), problem.q, problem.laws, nullptr, nullptr);
-  return Criterion(kinematics, options).run();
+  SparseRows W = problem.W.toSparse();
+  const double defect = delassusDefect(W);
+  const bool repaired = defect > ROUND_OFF && defect <= MOST_ASYMMETRY;
+  if (repaired)
+    W = (0.5 * (W + SparseRows(W.transpose()))).eval();
+  const ContactKinematics kinematics = collectKinematics(W, problem.q, problem.laws, nullptr, nullptr);
+  ExistenceReport report = Criterion(kinematics, options).run();
+  if (repaired)
+  {
+    report.exact = false;
+    report.message += "; of the symmetric part of W, which is not symmetric";
+  }
+  if (report.verdict == Existence::CERTIFIED && defect > MOST_ASYMMETRY)
+  {
+    report.verdict = Existence::UNDECIDED;
+    report.message = "W is not symmetric and positive semi-definite: the criterion proves nothing";
+  }
+  return report;
 }
 
 }  // namespace frictional_contact_sim

@@ -90,6 +90,51 @@ double verifiedMargin(const ContactKinematics& kinematics, const Eigen::VectorXd
   return margin;
 }
 
+double roundOffMissing(const ContactKinematics& kinematics, const Eigen::VectorXd& v, double distance, double& change)
+{
+  double worst = 0.0;
+  change = 0.0;
+  for (const DualCone& cone : kinematics.cones)
+  {
+    double missing = 0.0, size = 0.0, squares = 0.0;
+    for (int j = cone.row; j < cone.row + cone.dimension; ++j)
+    {
+      const Bounded row = rowValue(kinematics.H, j, v, kinematics.w[j]);
+      const double slack = row.error + rowNorm(kinematics.H, j) * distance * (1.0 + 1e-12);
+      double products = std::abs(kinematics.w[j]);
+      for (SparseRows::InnerIterator entry(kinematics.H, j); entry; ++entry)
+        products += std::abs(entry.value() * v[entry.col()]);
+      if (j == cone.row)
+      {
+        missing = -(row.value - slack);
+        size = products;
+      }
+      else if (cone.friction > 0.0)
+      {
+        squares += (std::abs(row.value) + slack) * (std::abs(row.value) + slack);
+        size += cone.friction * products;
+      }
+    }
+    missing += cone.friction * std::sqrt(squares) * (1.0 + 8.0 * EPSILON);
+    if (missing <= 0.0)
+      continue;
+    change = std::max(change, missing);
+    worst = std::max(worst, size > 0.0 ? missing / (EPSILON * size) : std::numeric_limits<double>::infinity());
+  }
+  return worst;
+}
+
+Eigen::VectorXd contradiction(const ContactKinematics& kinematics)
+{
+  const Eigen::MatrixXd E = kinematics.E;
+  const Eigen::VectorXd nearest = E.completeOrthogonalDecomposition().solve(-kinematics.b);
+  Eigen::VectorXd lambda = -(kinematics.b + E * nearest);
+  const double size = lambda.norm();
+  if (size > 0.0)
+    lambda /= size;
+  return lambda;
+}
+
 double verifiedExclusion(const ContactKinematics& kinematics, Eigen::VectorXd& r, const Eigen::VectorXd& lambda)
 {
   for (const DualCone& cone : kinematics.cones)

@@ -6,32 +6,10 @@
  * A sum of k products computed in floating point differs from the exact one by at most (k + 2) eps times the sum of
  * absolute values (Higham (2002), section 3.1); every quantity below is widened by that before it is judged.
  */
-#include <Eigen/Core>
-#include <vector>
-
-#include "frictional_contact_sim/problem/incremental_problem.h"
+#include "contact_kinematics.h"
 
 namespace frictional_contact_sim
 {
-/** @brief A row group of H whose velocity must lie in a dual cone. */
-struct DualCone
-{
-  int law;  ///< index in the problem's laws
-  int row;  ///< first row in H
-  int dimension;  ///< 1, 2 or 3
-  double friction;  ///< [-]
-};
-
-/** @brief What the criterion looks at: kinematics only. */
-struct ContactKinematics
-{
-  SparseRows H;  ///< rows x nv
-  Eigen::VectorXd w;  ///< rows
-  SparseRows E;  ///< bilateral rows x nv
-  Eigen::VectorXd b;  ///< bilateral rows
-  std::vector<DualCone> cones;
-};
-
 /** @brief Moves v onto E v + b = 0 and bounds what is left. */
 class BilateralCorrection
 {
@@ -45,6 +23,14 @@ private:
   Eigen::MatrixXd pseudo_inverse_;  ///< nv x bilateral rows, least norm on the independent rows
 };
 
+/**
+ * @brief How far the data must move for v to be exact: with w changed in row j by at most this many units of round-off
+ * of |H||v| + |w| the margin is at least 0 (rounding errors of this evaluation counted in).
+ * @param distance as in verifiedMargin. @param change the largest change of w itself [m/s]
+ * @return units of DBL_EPSILON; infinite where no change of that kind helps
+ */
+double roundOffMissing(const ContactKinematics& kinematics, const Eigen::VectorXd& v, double distance, double& change);
+
 /** @brief A lower bound of min_i (u_N - mu |u_T|), u = H v' + w, over all v' within `distance` of v (2-norm). */
 double verifiedMargin(const ContactKinematics& kinematics, const Eigen::VectorXd& v, double distance);
 
@@ -55,5 +41,11 @@ double verifiedMargin(const ContactKinematics& kinematics, const Eigen::VectorXd
  * @return the bound, 0 when nothing is proved
  */
 double verifiedExclusion(const ContactKinematics& kinematics, Eigen::VectorXd& r, const Eigen::VectorXd& lambda);
+
+/**
+ * @brief lambda of contradicting bilateral rows: the part of -b that no velocity makes. verifiedExclusion() with r = 0
+ * says whether it proves anything.
+ */
+Eigen::VectorXd contradiction(const ContactKinematics& kinematics);
 
 }  // namespace frictional_contact_sim

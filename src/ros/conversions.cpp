@@ -15,6 +15,15 @@ void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target)
   target.z = source.z();
 }
 
+geometry_msgs::Point toPoint(const Eigen::Vector3d& source)
+{
+  geometry_msgs::Point point;
+  point.x = source.x();
+  point.y = source.y();
+  point.z = source.z();
+  return point;
+}
+
 namespace
 {
 void fillPoint(const Eigen::Vector3d& source, geometry_msgs::Point& target)
@@ -114,6 +123,34 @@ std::uint8_t toMessage(SolverStatus status)
 
 }  // namespace
 
+std::uint8_t toMessage(Existence existence)
+{
+  switch (existence)
+  {
+    case Existence::CERTIFIED:
+      return StepReport::CERTIFIED;
+    case Existence::REFUTED:
+      return StepReport::REFUTED;
+    case Existence::UNDECIDED:
+      break;
+  }
+  return StepReport::UNDECIDED;
+}
+
+std::uint8_t toMessage(Uniqueness uniqueness)
+{
+  switch (uniqueness)
+  {
+    case Uniqueness::UNIQUE_V:
+      return StepReport::CERTIFIED;
+    case Uniqueness::MULTIPLE:
+      return StepReport::REFUTED;
+    case Uniqueness::UNKNOWN:
+      break;
+  }
+  return StepReport::UNDECIDED;
+}
+
 double impulseTime(const Simulator& simulator)
 {
   const double dt = simulator.report().dt;
@@ -211,8 +248,16 @@ void fillStepReport(const StepSummary& summary, double real_time_factor, const r
   message.solve_time = summary.solve_time;
   message.bilateral_violation = summary.bilateral_violation;
   message.max_penetration = summary.max_penetration;
+  const StepCertificate& certificate = summary.certificate;
   message.existence = StepReport::NOT_CHECKED;
   message.uniqueness = StepReport::NOT_CHECKED;
+  message.existence_margin = 0.0;
+  if (certificate.checked)
+  {
+    message.existence = toMessage(certificate.existence);
+    message.existence_margin = certificate.margin;
+    message.uniqueness = toMessage(certificate.uniqueness);
+  }
   message.kinetic = summary.energy.kinetic;
   message.potential = summary.energy.potential;
   message.actuators = summary.energy.actuators;

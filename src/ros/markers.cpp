@@ -36,6 +36,7 @@ constexpr double HEAD = 0.045;
 constexpr double HEAD_LENGTH = 0.08;
 constexpr double CONE_HEIGHT = 0.1;
 constexpr double LETTERS = 0.06;
+constexpr double BLOCKING_BALL = 0.12;
 constexpr double LEGEND_GAP = 0.15;  // above the bodies
 
 std_msgs::ColorRGBA colorOf(ContactMode mode, double opacity)
@@ -52,15 +53,6 @@ std_msgs::ColorRGBA colorOf(ContactMode mode, double opacity)
       break;
   }
   return makeColor(0.6, 0.6, 0.6, opacity);
-}
-
-geometry_msgs::Point toPoint(const Eigen::Vector3d& source)
-{
-  geometry_msgs::Point point;
-  point.x = source.x();
-  point.y = source.y();
-  point.z = source.z();
-  return point;
 }
 
 Marker makeMarker(const char* name_space, size_t id, int type, const ros::Time& stamp)
@@ -223,6 +215,33 @@ Eigen::AlignedBox3d boundingBox(const CollisionShape& shape, const Eigen::Isomet
   return {center - half, center + half};
 }
 
+/** @brief Red balls at contacts that no velocity satisfies together, pale where that is only foreseen; with the words.
+ */
+size_t appendBlocking(const StepCertificate& certificate, const MarkerScale& scale, const ros::Time& stamp,
+                      visualization_msgs::MarkerArray& message)
+{
+  size_t count = 0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  const bool refuted = certificate.existence == Existence::REFUTED;
+  for (const NamedRow& row : certificate.blocking)
+  {
+    if (!row.is_contact)
+      continue;
+    Marker ball = makeMarker("blocking", count++, Marker::SPHERE, stamp);
+    ball.pose.position = toPoint(row.position);
+    ball.scale.x = ball.scale.y = ball.scale.z = BLOCKING_BALL * scale.size;
+    ball.color = makeColor(1.0, 0.0, 0.0, refuted ? 1.0 : 0.4);
+    message.markers.push_back(ball);
+    place += row.position;
+  }
+  if (count == 0)
+    return 0;
+  const std::string text = refuted ? "REFUTED: " + joinNames(certificate.blocking) : certificate.warning;
+  place = place / static_cast<double>(count) + Eigen::Vector3d(0.0, 0.0, 0.5 * scale.size);
+  message.markers.push_back(makeText("blocking", count++, text, place, scale, stamp));
+  message.markers.back().color = makeColor(1.0, 0.0, 0.0, 1.0);
+  return count;
+}
 }  // namespace
 
 MarkerScale markerScale(const Simulator& simulator, double force_scale)
@@ -285,6 +304,8 @@ MarkerCounts appendContactMarkers(const Simulator& simulator, const ros::Time& s
   message.markers.push_back(cones);
   counts.values = appendValues(contacts, dt, scale, stamp, message);
   appendDeleted("value", counts.values, previous.values, stamp, message);
+  counts.blocking = appendBlocking(simulator.report().certificate, scale, stamp, message);
+  appendDeleted("blocking", counts.blocking, previous.blocking, stamp, message);
   appendLegend(scale, stamp, message);
   return counts;
 }

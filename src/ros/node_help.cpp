@@ -65,6 +65,8 @@ const std::vector<ParameterHelp>& parameterHelp()
       {"on_failure", "stop", "stop, pause, hold or accept; of a scenario: the file's unless set"},
       {"failure", "", "{policy, fallback, time_limit}, as in a scenario file"},
       {"contact_law", "gap", "or velocity: the thesis's plain law"},
+      {"certify_every", "0", "steps between two verdicts on existence, on ~certificate and in ~step_report; 0 = none"},
+      {"certify_bound", "0", "R of their margin [m/s, rad/s]; 0 = ten times what moves outside, at least 1"},
       {"broad_phase", "auto", "or fcl, list: the same contacts"},
       {"fallback", "true", "other methods are tried before a step is given up"},
       {"step_time_limit", "0", "of a whole step [s wall clock]; 0 = none"},

@@ -79,6 +79,7 @@ SimulatorNode::SimulatorNode(ros::NodeHandle& node, ros::NodeHandle& private_nod
   , pacer_(parameters.real_time_factor)
   , diagnostics_(node, private_node, [this] { return runState(); })
   , failure_lines_(goesOn(parameters.scenario.failure.policy) ? FAILURE_PERIOD : 0.0)
+  , certificate_lines_(FAILURE_PERIOD)
   , services_(private_node)
   , paused_(parameters.start_paused)
   , waiting_(!parameters.wait_for_subscribers.empty())
@@ -264,6 +265,17 @@ void SimulatorNode::reportFailure(const std::string& where)
     ROS_WARN_STREAM("~max_dumps: " << dumps_ << " problems are in " << parameters_.dump_dir << ", no more are written");
 }
 
+/** @brief A line a second at most about a scene that has no solution, or soon none. */
+void SimulatorNode::reportCertificate()
+{
+  const StepCertificate& certificate = simulator_.report().certificate;
+  if (!certificate.checked || certificate.warning.empty())
+    return;
+  if (const std::optional<int> held_back = certificate_lines_.pass(wallSeconds()))
+    ROS_WARN_STREAM("step " << certificate.step << ": " << certificate.warning
+                            << (*held_back > 0 ? "; not shown since: " + std::to_string(*held_back) : ""));
+}
+
 /** @brief What the policy makes of the last step, reset or set. @param where of the line that is logged */
 SimulatorNode::Outcome SimulatorNode::judge(const std::string& where)
 {
@@ -295,11 +307,16 @@ SimulatorNode::Outcome SimulatorNode::advance()
   if (!taken)
   {
     publisher_->publishReport(pacer_.realTimeFactor());
+    publisher_->publishCertificate();
+    if (simulator_.report().certificate.checked)
+      publisher_->publishMarkers();  // where it cannot go on
+    reportCertificate();
     return judge("step " + std::to_string(simulator_.report().step));
   }
   ++steps_done_;
   pacer_.measure(simulator_.time(), wallSeconds());
   publisher_->publish(pacer_.realTimeFactor());
+  reportCertificate();
   trajectories_.update();
   return judge("step " + std::to_string(simulator_.report().step));
 }

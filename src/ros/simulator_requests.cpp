@@ -1,4 +1,5 @@
 // The node's services about wrenches, state and settings: the table, each line a handler of its own file.
+#include "frictional_contact_sim/ros/certificates.h"
 #include "frictional_contact_sim/ros/setting_services.h"
 #include "frictional_contact_sim/ros/simulator_node.h"
 
@@ -50,8 +51,11 @@ void SimulatorNode::advertiseRequests()
         setSolver(request, simulator_);
         reconfiguration_->update();
       });
-  services_.add<DumpFclib>("dump_fclib", [this](const auto& request, auto& response)
-                           { dumpFclib(request, simulator_, parameters_.dump_dir, response); });
+  services_.add<DumpFclib>(
+      "dump_fclib",
+      [this](const auto& request, auto& response) { dumpFclib(request, simulator_, parameters_.dump_dir, response); });
+  services_.add<Certify>("certify",
+                         [this](const auto& request, auto& response) { certifyStep(request, simulator_, response); });
   services_.add<GetInfo>("get_info",
                          [this](const auto&, auto& response)
                          {

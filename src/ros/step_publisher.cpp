@@ -60,8 +60,9 @@ StepPublisher::StepPublisher(ros::NodeHandle& node, ros::NodeHandle& private_nod
   joint_states_publisher_ = advertise(node, "joint_states", DATA_QUEUE, &StepPublisher::jointStates);
   contacts_publisher_ = advertise(private_node, "contacts", DATA_QUEUE, &StepPublisher::contacts);
   step_report_publisher_ = private_node.advertise<StepReport>("step_report", DATA_QUEUE);
-  data_topics_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(),
-                  step_report_publisher_.getTopic()};
+  certificate_publisher_ = private_node.advertise<CertificateReport>("certificate", DATA_QUEUE);
+  data_topics_ = {joint_states_publisher_.getTopic(), contacts_publisher_.getTopic(), step_report_publisher_.getTopic(),
+                  certificate_publisher_.getTopic()};
   odometry_.resize(simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
     advertiseOdometry(private_node, body,
@@ -140,8 +141,9 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
   std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_,  &markers_publisher_,
-                                                   &tf_publisher_,           &bodies_publisher_};
+                                                   &step_report_publisher_,  &certificate_publisher_,
+                                                   &markers_publisher_,      &tf_publisher_,
+                                                   &bodies_publisher_};
   if (publish_clock_)
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)
@@ -168,6 +170,16 @@ StepReport StepPublisher::report(double real_time_factor) const
   StepReport report;
   fillStepReport(simulator_.report(), real_time_factor, std::max(ros::TIME_MIN, toStamp(simulator_.time())), report);
   return report;
+}
+
+/** @brief Of the step just done, when it was checked. */
+void StepPublisher::publishCertificate()
+{
+  const StepCertificate& certificate = simulator_.report().certificate;
+  if (!certificate.checked || !listened(certificate_publisher_))
+    return;
+  fillCertificate(certificate, std::max(ros::TIME_MIN, toStamp(simulator_.time())), certificate_);
+  certificate_publisher_.publish(certificate_);
 }
 
 void StepPublisher::publishReport(double real_time_factor)
@@ -295,6 +307,7 @@ void StepPublisher::publish(double real_time_factor)
     publishReport(real_time_factor);
     publishOdometry();
   }
+  publishCertificate();
   sensors_->publish(stamp_);
   if (tf_divider_.due(step))
     publishTransforms();

@@ -28,6 +28,7 @@ void Simulator::Impl::finishStep()
     rememberGood();
   storeReport();
   storeOutcome();
+  certifyStep();
 }
 
 void Simulator::Impl::storeOutcome()

@@ -133,6 +133,8 @@ ConfigKeys numericKeys(Scenario& scenario)
               "failure", [&scenario](const ConfigNode& node) { readFailure(node, scenario.failure); }),
           key("contact_law", scenario.contact_law,
               Choices<ContactLawForm>{{"gap", ContactLawForm::GAP}, {"velocity", ContactLawForm::VELOCITY}}),
+          key("certify_every", scenario.certify_every, 0),
+          key("certify_bound", scenario.certify_bound, notNegative()),
           key("broad_phase", scenario.broad_phase,
               Choices<BroadPhaseKind>{
                   {"auto", BroadPhaseKind::AUTO}, {"fcl", BroadPhaseKind::FCL}, {"list", BroadPhaseKind::LIST}})};

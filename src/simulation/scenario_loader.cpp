@@ -80,4 +80,9 @@ Scenario loadScenarioFile(const std::string& path)
   return readScenario(loadYaml(path, "a scenario file"));
 }
 
+Scenario loadScenarioFile(const std::string& path, const std::string& key, double value)
+{
+  return readScenario(loadYaml(path, "a scenario file").changed(key, value));
+}
+
 }  // namespace frictional_contact_sim

@@ -43,6 +43,12 @@ struct Simulator::Impl
   void standStill();  ///< the answer of a step that is held
   void rememberGood();
   void storeOutcome();
+  void certifyStep();
+  void certify(CertifyOptions options, StepCertificate& result) const;
+  void foresee(CertifyOptions options, StepCertificate& result) const;
+  std::string sideName(int shape) const;
+  NamedRow nameRow(const RowOrigin& origin, const ContactPoint* point) const;
+  std::vector<NamedRow> nameRows(const std::vector<int>& laws, const std::vector<int>& bilaterals) const;
   void storeReport();
   void dumpProblem(const std::string& when);  ///< problem of a failed solve; its name goes into the outcome
   int countIslands();
@@ -92,6 +98,7 @@ struct Simulator::Impl
   bool is_solved = false;  ///< assembly.problem() and result belong together
   StepOutcome outcome;
   StepSummary report;
+  MarginTrend trend;
   UnionFind island_of;
 };
 

@@ -1,5 +1,7 @@
 #include "frictional_contact_sim/solver/cadoux_newton.h"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <utility>
 
 #include "frictional_contact_sim/math/cone.h"
@@ -10,6 +12,15 @@ namespace frictional_contact_sim
 {
 namespace
 {
+constexpr int MOST_LANDING_ROWS = 300;
+
+bool isPlanar(const DelassusProblem& problem)
+{
+  return std::none_of(
+      problem.laws.begin(), problem.laws.end(),
+      [](const Law& law) { return law.type == LawType::COULOMB_3D && law.coefficient > 0.0; });
+}
+
 template <int D>
 void coneJacobian(const Law& law, const Eigen::VectorXd& x, int row, SquareMatrix<3>& jacobian)
 {
@@ -104,11 +115,9 @@ void CadouxNewtonStep::fillRows(const DelassusProblem& problem, const SlipMap& m
   right_.segment<D>(first) = -rho * mu * gap_[i] * P.col(0);
 }
 
-bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s,
-                               double alpha, Eigen::VectorXd& ds)
+/** F - s and F, a number for each law. */
+void CadouxNewtonStep::setGaps(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s)
 {
-  alpha_ = alpha;
-  activate(problem, map);
   gap_.setZero(problem.W.blocks());
   speed_.setZero(problem.W.blocks());
   for (int k = 0; k < map.size(); ++k)
@@ -116,8 +125,10 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
     gap_[map.contact(k)] = map.value()[k] - s[k];
     speed_[map.contact(k)] = map.value()[k];
   }
-  lu_.reserve(active_);
-  Eigen::Map<Eigen::MatrixXd> system = lu_.start(active_);
+}
+
+void CadouxNewtonStep::fill(const DelassusProblem& problem, const SlipMap& map, Eigen::Map<Eigen::MatrixXd>& system)
+{
   for (int i = 0; i < problem.W.blocks(); ++i)
   {
     if (position_[static_cast<size_t>(problem.W.offset(i))] < 0)
@@ -129,6 +140,17 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
     else
       fillRows<1>(problem, map, i, system);
   }
+}
+
+bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s,
+                               double alpha, Eigen::VectorXd& ds)
+{
+  alpha_ = alpha;
+  activate(problem, map);
+  setGaps(problem, map, s);
+  lu_.reserve(active_);
+  Eigen::Map<Eigen::MatrixXd> system = lu_.start(active_);
+  fill(problem, map, system);
   if (!lu_.factor())
     return false;
   lu_.solve(right_.head(active_));
@@ -149,6 +171,42 @@ bool CadouxNewtonStep::compute(const DelassusProblem& problem, const SlipMap& ma
       ds[k] += map.u().segment(row, tangents).dot(du_.segment(row, tangents)) / speed_[i];
   }
   return ds.allFinite();
+}
+
+bool CadouxNewtonStep::land(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s,
+                            Eigen::VectorXd& r)
+{
+  if (problem.W.rows() > MOST_LANDING_ROWS || !isPlanar(problem))
+    return false;
+  alpha_ = 0.0;
+  activate(problem, map);
+  setGaps(problem, map, s);
+  system_.setZero(active_, active_);
+  Eigen::Map<Eigen::MatrixXd> system(system_.data(), active_, active_);
+  fill(problem, map, system);
+  r = map.r();
+  for (int i = 0; i < problem.W.blocks(); ++i)
+  {
+    const int row = problem.W.offset(i);
+    const int d = problem.W.dimension(i);
+    const int first = position_[static_cast<size_t>(row)];
+    const Law& law = problem.laws[static_cast<size_t>(i)];
+    if (first < 0)
+      r.segment(row, d).setZero();
+    else if (d == 3)
+      right_.segment<3>(first) -=
+          map.r().segment<3>(row) - projectOntoCone<3>(Vector<3>(x_.segment<3>(row)), law.coefficient);
+    else if (d == 2)
+      right_.segment<2>(first) -=
+          map.r().segment<2>(row) - projectOntoCone<2>(Vector<2>(x_.segment<2>(row)), law.coefficient);
+    else
+      right_[first] -= map.r()[row] - projectOntoLaw(law, x_[row]);
+  }
+  const Eigen::VectorXd dr = system_.completeOrthogonalDecomposition().solve(right_.head(active_));
+  for (int row = 0; row < problem.W.rows(); ++row)
+    if (position_[static_cast<size_t>(row)] >= 0)
+      r[row] += dr[position_[static_cast<size_t>(row)]];
+  return r.allFinite();
 }
 
 CadouxNewton::CadouxNewton(const CadouxNewtonOptions& options, std::unique_ptr<ConvexSolver> inner)
@@ -187,6 +245,16 @@ void CadouxNewton::doSolve(const DelassusProblem& problem, const SolveContext& c
     ++result.iterations;
     if (loop.record(context.residual(problem, map_.u(), map_.r()), map_.r()))
       return;
+    if (newton_.land(problem, map_, s_, landed_))
+    {
+      problem.W.apply(landed_, landed_u_);
+      landed_u_ += problem.q;
+      const double residual = context.residual(problem, landed_u_, landed_);
+      context.spend(SolveContext::factorization(problem, newton_.size()));
+      // Elsewhere the piece is not the solution's, and the point worth nothing.
+      if (residual <= context.tolerance && loop.record(residual, landed_))
+        return;
+    }
     const bool regular = newton_.compute(problem, map_, s_, options_.proximal, step_);
     context.spend(SolveContext::factorization(problem, newton_.size()));
     fixed_point_ = map_.value();

@@ -23,14 +23,14 @@ bool isFrictional(const Law& law)
 }
 
 /// Number of complementary pairs of a law.
-int lcpSize(const Law& law, int facets)
+int lcpSize(const Law& law, int facets, LcpForm form)
 {
   switch (law.type)
   {
     case LawType::COULOMB_3D:
       return isFrictional(law) ? facets + 2 : 1;
     case LawType::COULOMB_2D:
-      return isFrictional(law) ? 3 : 1;
+      return !isFrictional(law) ? 1 : form == LcpForm::STEWART ? 4 : 3;
     case LawType::UNILATERAL:
       return 1;
     case LawType::DRY_FRICTION:
@@ -60,8 +60,10 @@ void addPlanar(const Law& law, int row, int first, Maps& maps)
   maps.N(first + 2, first + 1) = -1.0;
 }
 
+/// Directions of the facets: `facets` in the plane, or the two of a line.
 void addSpatial(const Law& law, int row, int first, int facets, double angle, Maps& maps)
 {
+  const int tangents = law.dimension() - 1;
   const int slip = first + facets + 1;
   maps.R(row, first) = 1.0;
   maps.C(first, row) = 1.0;
@@ -70,8 +72,8 @@ void addSpatial(const Law& law, int row, int first, int facets, double angle, Ma
   {
     const int index = first + 1 + k;
     const Eigen::Vector2d direction(std::cos(angle + 2.0 * PI * k / facets), std::sin(angle + 2.0 * PI * k / facets));
-    maps.R.block<2, 1>(row + 1, index) = direction;
-    maps.C.block<1, 2>(index, row + 1) = direction.transpose();
+    maps.R.block(row + 1, index, tangents, 1) = direction.head(tangents);
+    maps.C.block(index, row + 1, 1, tangents) = direction.head(tangents).transpose();
     maps.N(index, slip) = 1.0;
     maps.N(slip, index) = -1.0;
   }
@@ -88,11 +90,12 @@ void addDryFriction(double threshold, int row, int first, Maps& maps)
   maps.d[first + 1] = threshold;
 }
 
-Maps makeMaps(const DelassusProblem& problem, int facets, const Eigen::VectorXd& angles, const Eigen::VectorXd& scale)
+Maps makeMaps(const DelassusProblem& problem, int facets, const Eigen::VectorXd& angles, const Eigen::VectorXd& scale,
+              LcpForm form)
 {
   int size = 0;
   for (const Law& law : problem.laws)
-    size += lcpSize(law, facets);
+    size += lcpSize(law, facets, form);
   const int rows = problem.W.rows();
   Maps maps;
   maps.R.setZero(rows, size);
@@ -110,11 +113,13 @@ Maps makeMaps(const DelassusProblem& problem, int facets, const Eigen::VectorXd&
       addDryFriction(law.coefficient / scale[index], row, first, maps);
     else if (!isFrictional(law) && law.type != LawType::BILATERAL)
       maps.R(row, first) = maps.C(first, row) = 1.0;
+    else if (law.type == LawType::COULOMB_2D && form == LcpForm::STEWART)
+      addSpatial(law, row, first, 2, 0.0, maps);
     else if (law.type == LawType::COULOMB_2D)
       addPlanar(law, row, first, maps);
     else if (law.type == LawType::COULOMB_3D)
       addSpatial(law, row, first, facets, angles[index], maps);
-    first += lcpSize(law, facets);
+    first += lcpSize(law, facets, form);
   }
   return maps;
 }
@@ -136,6 +141,10 @@ const OptionTable<LcpLemkeOptions>& LcpLemkeOptions::table()
           "lcp_lemke",
           {
               {"method", &LcpLemkeOptions::method, {"lemke", "principal_pivoting"}, "way of pivoting"},
+              {"form",
+               &LcpLemkeOptions::form,
+               {"reduced", "stewart"},
+               "of planar contacts: (4.2), or the copositive one that cannot fail when nothing outside moves"},
               {"facets", &LcpLemkeOptions::facets, between(4, 1000), "directions",
                "of the polyhedral cone in 3D, an even number"},
               {"alignments", &LcpLemkeOptions::alignments, atLeast(0), "solves",
@@ -153,9 +162,9 @@ void LcpLemkeOptions::validate() const
 }
 
 ContactLcp makeContactLcp(const DelassusProblem& problem, int facets, const Eigen::VectorXd& angles,
-                          const Eigen::VectorXd& scale)
+                          const Eigen::VectorXd& scale, LcpForm form)
 {
-  Maps maps = makeMaps(problem, facets, angles, scale);
+  Maps maps = makeMaps(problem, facets, angles, scale, form);
   Eigen::VectorXd row_scale(problem.W.rows());
   for (int i = 0; i < problem.W.blocks(); ++i)
     row_scale.segment(problem.W.offset(i), problem.W.dimension(i)).setConstant(scale[i]);
@@ -234,7 +243,7 @@ void LcpLemke::doSolve(const DelassusProblem& problem, const SolveContext& conte
   bool spatial = false;
   for (const Law& law : problem.laws)
   {
-    size += lcpSize(law, options_.facets);
+    size += lcpSize(law, options_.facets, options_.form);
     spatial = spatial || (law.type == LawType::COULOMB_3D && isFrictional(law));
   }
   if (size > options_.max_size)
@@ -256,7 +265,7 @@ void LcpLemke::doSolve(const DelassusProblem& problem, const SolveContext& conte
   {
     if (loop.outOfBudget("solves of the LCP exhausted"))
       return;
-    const ContactLcp lcp = makeContactLcp(problem, options_.facets, angles_, scale);
+    const ContactLcp lcp = makeContactLcp(problem, options_.facets, angles_, scale, options_.form);
     const LcpResult answer = options_.method == LcpMethod::LEMKE ? solveLemke(lcp.A, lcp.b, pivoting)
                                                                  : solvePrincipalPivoting(lcp.A, lcp.b, pivoting);
     ++result.iterations;

@@ -8,7 +8,7 @@
 #include <functional>
 #include <sstream>
 
-#include "frictional_contact_sim/problem/existence.h"
+#include "frictional_contact_sim/problem/certificate/certify.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/problem/rigid_families.h"
@@ -67,11 +67,13 @@ std::string describe(const RodFamilyOptions& options)
 std::string write(const std::string& path, const IncrementalProblem& problem, const std::string& family,
                   const std::string& parameters)
 {
-  const ExistenceReport existence = checkExistence(problem);
-  char margin[32];
-  std::snprintf(margin, sizeof(margin), "%.3g", existence.margin);
+  CertifyOptions options;
+  options.conditioning = false;
+  const Certificate certificate = certify(problem, options);
+  char margin[64];
+  std::snprintf(margin, sizeof(margin), "margin %.3g for |v| <= %.3g", certificate.margin, certificate.bound);
   const std::string verdict =
-      std::string("existence ") + toString(existence.verdict) + " (margin " + margin + ", " + existence.message + ")";
+      std::string("existence ") + toString(certificate.existence) + " (" + margin + ", " + certificate.message + ")";
   writeFclib(path, problem, {family, "family " + family + ": " + parameters + "; " + verdict, ""});
   return path + ": " + std::to_string(problem.laws.size()) + " contacts, " + std::to_string(problem.velocities()) +
          " velocities, " + verdict;

@@ -144,6 +144,14 @@ public:
    */
   void readMap(const ConfigKeys& keys, UnknownKeys unknown = UnknownKeys::AS_DOCUMENT) const;
 
+  /**
+   * @brief A copy of the whole document with another number at one place, which is added to its map where it is not
+   * there.
+   * @param path keys with dots between; an element of a list by its index or by its key `name`: "bodies.box.pose.xyz.2"
+   * @throws ConfigError when the path leads through a scalar, or to an element that is not there
+   */
+  ConfigNode changed(const std::string& path, double value) const;
+
   /** @brief FILE:LINE: key 'KEY', or the parameter. */
   std::string place() const;
   /** @brief @throws ConfigError "PLACE: reason" */

@@ -77,6 +77,13 @@ public:
   void accept(const StepContext& context, const StepAnswer& answer);
 
   const IncrementalProblem& problem() const { return problem_; }
+  /** @brief Whose each law of problem() is, and each bilateral row. */
+  const std::vector<RowOrigin>& origins() const { return sink_.origins(); }
+  const std::vector<RowOrigin>& bilateralOrigins() const { return sink_.bilateralOrigins(); }
+  /** @brief The point of a contact's law, valid for the step; nullptr for other rows. */
+  const ContactPoint* contactOf(const StepContext& context, int law) const;
+  /** @brief w of problem() as if all gaps were closed: one-sided rows without the velocity that their gap allows. */
+  Eigen::VectorXd closedOffsets() const;
   /** @brief Velocities of the bodies, without auxiliary ones. */
   int velocities() const { return velocities_; }
   /** @brief True when a contact or limit closes: an impact has something to solve. */

@@ -58,6 +58,7 @@ public:
   Again again(const StepContext& context, const Solution& solution, bool converged) override;
   Again lookAhead(const StepContext& context, const Solution& solution) override;
   void markActing(std::vector<char>& bodies) const override;
+  const ContactPoint* contactOf(const StepContext& context, int law) const override;
   void accept(const StepContext& context, const StepAnswer& answer) override;
 
 private:

@@ -22,6 +22,14 @@ struct RowRecord
   double* memory = nullptr;  ///< the impulse of the last step, warm start of this one; none: the source keeps its own
 };
 
+/** @brief Whose a law or a bilateral row is. */
+struct RowOrigin
+{
+  const char* source = "";  ///< RowSource::name()
+  int body = -1;  ///< of the joint, -1: of no single joint
+  int joint = -1;
+};
+
 /** @brief What the velocity of a law's rows is. */
 struct RowUnit
 {
@@ -40,6 +48,9 @@ public:
   int bilaterals() const { return g_.rows(); }
   int velocities() const { return velocities_; }
   int columns() const { return velocities_ + static_cast<int>(auxiliary_mass_.size()); }
+
+  /** @brief Of all laws and bilateral rows that follow. */
+  void setOrigin(const RowOrigin& origin) { origin_ = origin; }
 
   /** @brief Next entry of the current row of H. */
   void push(int column, double value) { h_.push(column, value); }
@@ -60,6 +71,8 @@ public:
 
   const std::vector<RowRecord>& rowRecords() const { return row_records_; }
   const std::vector<RowRecord>& bilateralRecords() const { return bilateral_records_; }
+  const std::vector<RowOrigin>& origins() const { return origins_; }  ///< of the laws
+  const std::vector<RowOrigin>& bilateralOrigins() const { return bilateral_origins_; }
   const std::vector<RowUnit>& units() const { return units_; }
   const std::vector<RowUnit>& bilateralUnits() const { return bilateral_units_; }
   const std::vector<double>& auxiliaryMass() const { return auxiliary_mass_; }
@@ -77,6 +90,9 @@ private:
   std::vector<double> w_;
   std::vector<double> b_;
   std::vector<Law> laws_;
+  RowOrigin origin_;
+  std::vector<RowOrigin> origins_;
+  std::vector<RowOrigin> bilateral_origins_;
   std::vector<RowUnit> units_;
   std::vector<RowUnit> bilateral_units_;
   std::vector<double> auxiliary_mass_;

@@ -131,6 +131,9 @@ public:
   virtual void accept(const StepContext&, const StepAnswer&) {}
   /** @brief Work of what addMomentum added for one body. Body::v_middle is the mean of old and new velocity. */
   virtual void book(const StepContext&, int /*body*/, const Solution&, EnergyLedger&) const {}
+  /** @brief The contact point that a law of the problem stands for, valid for the step; nullptr: none of this source.
+   */
+  virtual const ContactPoint* contactOf(const StepContext&, int /*law*/) const { return nullptr; }
   /** @brief Largest position error of its bilateral rows [m] or [rad]. */
   virtual double violation() const { return 0.0; }
 };

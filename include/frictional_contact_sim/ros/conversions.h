@@ -37,12 +37,16 @@ void fillLinkContacts(const Simulator& simulator, const NameTable& names, int bo
 /** @param wrench (force; torque) in the axes of the frame [N], [N m] */
 void fillWrench(const Vector6d& wrench, const std::string& frame_id, const ros::Time& stamp,
                 geometry_msgs::WrenchStamped& message);
-/** @brief existence and uniqueness are NOT_CHECKED: a step does not prove them. */
+/** @brief existence and uniqueness are NOT_CHECKED in a step that was not asked for them (~certify_every). */
 void fillStepReport(const StepSummary& summary, double real_time_factor, const ros::Time& stamp, StepReport& message);
 /** @brief Pose and velocity of the root link of a body. */
 void fillOdometry(const Simulator& simulator, const NameTable& names, int body, const ros::Time& stamp,
                   nav_msgs::Odometry& message);
 void fillTransform(const Eigen::Isometry3d& pose, geometry_msgs::Transform& message);
 void fillVector(const Eigen::Vector3d& source, geometry_msgs::Vector3& target);
+geometry_msgs::Point toPoint(const Eigen::Vector3d& source);
+/** @brief CERTIFIED, REFUTED or UNDECIDED of StepReport; the same numbers in CertificateReport and Certify. */
+std::uint8_t toMessage(Existence existence);
+std::uint8_t toMessage(Uniqueness uniqueness);
 
 }  // namespace frictional_contact_sim

@@ -3,7 +3,7 @@
  * @file markers.h
  * @brief Contacts as rviz markers, coloured by mode: sticking green, sliding orange, impact blue, open grey.
  * Namespaces: `force` an arrow for each contact, `cone` the friction cones, `value` the force between two shapes in
- * newtons, `legend`.
+ * newtons, `blocking` red balls where the last verdict on existence is REFUTED or about to be, `legend`.
  */
 #include <ros/time.h>
 #include <std_msgs/ColorRGBA.h>
@@ -35,6 +35,7 @@ struct MarkerCounts
 {
   size_t arrows = 0;
   size_t values = 0;
+  size_t blocking = 0;
 };
 
 /**

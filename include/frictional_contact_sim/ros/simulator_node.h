@@ -62,6 +62,7 @@ private:
   Outcome advance();
   Outcome judge(const std::string& where);
   void reportFailure(const std::string& where);
+  void reportCertificate();
   void runStep();
   void idle();
   bool windowEnds() const;
@@ -93,6 +94,7 @@ private:
   DiagnosticsPublisher diagnostics_;
   RunSummary summary_;
   Throttle failure_lines_;
+  Throttle certificate_lines_;
   int dumps_ = 0;
   std::vector<std::string> awaited_topics_;  // resolved
   ServiceTable services_;

@@ -16,6 +16,7 @@
 
 #include "frictional_contact_sim/ros/body_joint_publisher.h"
 #include "frictional_contact_sim/ros/body_markers.h"
+#include "frictional_contact_sim/ros/certificates.h"
 #include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/link_publisher.h"
 #include "frictional_contact_sim/ros/markers.h"
@@ -52,8 +53,10 @@ public:
   void restartStamps();
   /** @brief While on, who subscribes gets the present state at once; else the next step is soon. */
   void greetSubscribers(bool on);
-  /** @brief Only ~step_report, of a step that was not taken: nothing else has changed. */
+  /** @brief Only ~step_report and the verdict, of a step that was not taken: nothing else has changed. */
   void publishReport(double real_time_factor);
+  void publishCertificate();
+  void publishMarkers();
   /** @brief Only /clock, with the stamp of the present state, for those who come while the simulation pauses. */
   void publishClock();
   /** @brief Topics of every step: what a recorder gets every message of. */
@@ -80,7 +83,6 @@ private:
   void publishJointsAndContacts();
   void publishOdometry();
   void publishTransforms();
-  void publishMarkers();
 
   const Simulator& simulator_;
   const NameTable& names_;
@@ -102,6 +104,7 @@ private:
   ros::Publisher joint_states_publisher_;
   ros::Publisher contacts_publisher_;
   ros::Publisher step_report_publisher_;
+  ros::Publisher certificate_publisher_;
   std::vector<ros::Publisher> odometry_publishers_;  // by body
   ros::Publisher markers_publisher_;
   ros::Publisher bodies_publisher_;
@@ -115,6 +118,7 @@ private:
   sensor_msgs::JointState joint_states_;
   ContactArray contacts_;
   StepReport step_report_;
+  CertificateReport certificate_;
   std::vector<nav_msgs::Odometry> odometry_;
   visualization_msgs::MarkerArray markers_;
   rosgraph_msgs::Clock clock_;

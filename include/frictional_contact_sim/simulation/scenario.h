@@ -107,6 +107,8 @@ struct Scenario
   std::vector<LoopSpec> loops;
   FailureOptions failure;
   ContactLawForm contact_law = ContactLawForm::GAP;
+  int certify_every = 0;  ///< steps between two verdicts on existence (step_certificate.h), 0: none
+  double certify_bound = 0.0;  ///< R of their margin [m/s, rad/s]; 0: ten times what w asks for, at least 1
   BroadPhaseKind broad_phase = BroadPhaseKind::AUTO;  ///< changes the time of a step, nothing else
 };
 

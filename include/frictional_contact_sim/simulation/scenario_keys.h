@@ -9,7 +9,7 @@
 
 namespace frictional_contact_sim
 {
-/** @brief How it is computed: time_step, gravity, solver, failure, contact_law, broad_phase. */
+/** @brief How it is computed: time_step, gravity, solver, failure, contact_law, certify_every, broad_phase. */
 ConfigKeys numericKeys(Scenario& scenario);
 /** @brief What bodies meet: materials, ground. */
 ConfigKeys surroundingKeys(Scenario& scenario);

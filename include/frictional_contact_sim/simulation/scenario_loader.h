@@ -12,6 +12,8 @@ namespace frictional_contact_sim
 {
 /** @throws ScenarioError */
 Scenario loadScenarioFile(const std::string& path);
+/** @brief The file with another number at one place, as ConfigNode::changed has it. @throws ScenarioError */
+Scenario loadScenarioFile(const std::string& path, const std::string& key, double value);
 /** @param source name for messages; relative paths are relative to its folder. @throws ScenarioError */
 Scenario loadScenario(const std::string& yaml, const std::string& source);
 

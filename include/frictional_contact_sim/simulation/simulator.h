@@ -209,6 +209,11 @@ public:
   const Solution& solution() const;
   /** @brief False before the first solve, and after a state was set for which nothing was to be solved. */
   bool isProblemSolved() const;
+  /** @brief The verdict on that problem. @throws std::invalid_argument when there is none, or an option is bad */
+  StepCertificate certify(const CertifyOptions& options = {}) const;
+  /** @brief Such a verdict in the report of every so many steps, and of each that has no answer; 0: never, and no cost.
+   * A setting as the tolerance is one. @throws std::invalid_argument when negative */
+  void setCertifyEvery(int steps);
   /** @brief hashOf(state()). */
   std::uint64_t stateHash() const;
 

@@ -8,6 +8,7 @@
 
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/energy_ledger.h"
+#include "frictional_contact_sim/simulation/step_certificate.h"
 #include "frictional_contact_sim/solver/solver.h"
 
 namespace frictional_contact_sim
@@ -42,6 +43,7 @@ struct StepSummary
   double bilateral_violation = 0.0;
   double max_penetration = 0.0;  ///< max(0, -gap) at the midpoint [m]
   EnergyLedger energy;
+  StepCertificate certificate;  ///< Scenario::certify_every
   std::string fclib_file;  ///< dump of a failed step, else empty
 };
 

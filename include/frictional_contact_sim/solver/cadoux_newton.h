@@ -9,8 +9,11 @@
  *   (I - P' + rho P' (W + alpha/rho + E S W)) dr = -rho P' E (F - s)                                    (4.28)
  * Singular without alpha when r(s) is not unique; only W dr enters ds, which is. Contacts with P' = 0 (take-off) have
  * dr = 0 and leave the system. Then Armijo's rule on 1/2 |F(s) - s|^2, at most line_search_steps halvings (each one
- * convex problem). Piecewise affine in 2D: there a step from the last piece leaves about alpha of the error (4.7.7).
- * Dense LU of the active rows; W explicit, dense or block-sparse. The inner solver is an argument. Frictionless
+ * convex problem). Piecewise affine in 2D (4.7.7): F is affine on the piece of the present point, and land() solves the
+ * whole problem on it, without alpha and with what the inner solver has left undone,
+ *   (I - P' + rho P' G W) dr = -(r - P(r - rho u~)) - rho P' mu e (F - s)       least-norm least squares
+ * so that the method ends with the first step from the right piece, whatever the tolerance; the answer is judged as
+ * any. Dense LU of the active rows; W explicit, dense or block-sparse. The inner solver is an argument. Frictionless
  * contacts are not in s.
  *
  * Source: Cadoux (2009), 4.7.5, table 5.6. Departures: rho_i = 1/lambda_max(W_ii) in (4.25), where the thesis has 1;
@@ -52,9 +55,16 @@ public:
   bool compute(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s, double alpha,
                Eigen::VectorXd& ds);
   int size() const { return active_; }  ///< of the last system
+  /**
+   * @brief In 2D the solution on the present piece. Dense orthogonal factor, rows^3.
+   * @param r the map's impulses, moved there @return false when the problem is not planar, or too large for it
+   */
+  bool land(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s, Eigen::VectorXd& r);
 
 private:
   void activate(const DelassusProblem& problem, const SlipMap& map);
+  void setGaps(const DelassusProblem& problem, const SlipMap& map, const Eigen::VectorXd& s);
+  void fill(const DelassusProblem& problem, const SlipMap& map, Eigen::Map<Eigen::MatrixXd>& system);
   template <int D>
   void fillRows(const DelassusProblem& problem, const SlipMap& map, int i, Eigen::Map<Eigen::MatrixXd>& system);
 
@@ -67,6 +77,7 @@ private:
   std::vector<int> position_;  ///< row -> active row or -1
   Eigen::VectorXd right_, dr_, du_;
   DenseLu lu_;
+  Eigen::MatrixXd system_;  ///< of land()
 };
 
 class CadouxNewton : public Solver
@@ -82,6 +93,7 @@ private:
   SlipMap map_;
   CadouxNewtonStep newton_;
   Eigen::VectorXd s_, trial_, step_, fixed_point_;
+  Eigen::VectorXd landed_, landed_u_;
 };
 
 }  // namespace frictional_contact_sim

@@ -12,13 +12,18 @@
  *   A = [ W_NN - W_NT D, 2 W_NT, 0 ; W_TN - W_TT D, 2 W_TT, I ; D, -I, 0 ],  b = (q_N, q_T, 0),  D = diag(mu)
  * (here contact by contact, which is a permutation, and with each law's rows scaled by sqrt(rho_i)).
  *
+ * form = stewart writes a planar contact as a spatial one with the two directions +-1: x = (r_N, b+, b-, s), y = (u_N,
+ * s + u_T, s - u_T, mu r_N - b+ - b-). Its matrix is copositive, x^T A x = r^T W r, which (4.2) is not: where a
+ * solution exists by the criterion of chapter 3, for w = 0 above all, Lemke's path cannot end on a ray (theorem 4.6;
+ * Cottle, Pang, Stone 1992, 4.4.13). One unknown more a contact.
+ *
  * In 3D the cone is replaced by the polyhedral cone on K = facets directions d_k; a sliding direction between two of
  * them is wrong by up to pi/K. The problem is solved again with the directions of each sliding contact turned so that
  * one opposes its slip velocity, at most `alignments` times: at a fixed point of that the answer is exact. The residual
  * is that of the exact cone in any case. Operator: W dense, of size rows x rows; LCP size 3 n (2D), (K + 2) n (3D).
  *
  * Source: Cadoux (2009), lemma 4.1 (the print exchanges two rows of (4.3)); Stewart, Trinkle (1996) and Anitescu, Potra
- * (1997) for the polyhedral cone; Lemke (1965). Departure: the alignment of facets.
+ * (1997) for the polyhedral cone; Stewart (1998); Lemke (1965). Departure: the alignment of facets.
  */
 #include <Eigen/Core>
 #include <vector>
@@ -35,9 +40,17 @@ enum class LcpMethod
   PRINCIPAL_PIVOTING
 };
 
+/** @brief How a planar contact with friction is written. */
+enum class LcpForm
+{
+  REDUCED,  ///< (4.2): three unknowns a contact
+  STEWART  ///< four, copositive
+};
+
 struct LcpLemkeOptions
 {
   LcpMethod method = LcpMethod::LEMKE;
+  LcpForm form = LcpForm::REDUCED;
   int facets = 8;  ///< K, directions of the polyhedral cone in 3D, even, >= 4
   int alignments = 40;  ///< solves with turned directions after the first, >= 0
   int max_size = 2500;  ///< largest LCP tried; above it the method fails at once, >= 1
@@ -63,7 +76,7 @@ struct ContactLcp
  * @param scale multiplies each law's impulse rows: r_i = scale_i r'_i, u'_i = scale_i u_i; ones for the plain matrices
  */
 ContactLcp makeContactLcp(const DelassusProblem& problem, int facets, const Eigen::VectorXd& angles,
-                          const Eigen::VectorXd& scale);
+                          const Eigen::VectorXd& scale, LcpForm form = LcpForm::REDUCED);
 
 class LcpLemke : public Solver
 {
