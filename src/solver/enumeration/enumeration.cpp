@@ -83,8 +83,8 @@ void compare(const Eigen::MatrixXd& W, const Eigen::VectorXd& q, const std::vect
   {
     int row = 0;
     for (size_t i = 0; i < laws.size(); row += laws[i++].dimension())
-      same_impulse[i] = same_impulse[i] && isSame(r.segment(row, laws[i].dimension()),
-                                                  reference.segment(row, laws[i].dimension()), size);
+      same_impulse[i] = same_impulse[i] &&
+                        isSame(r.segment(row, laws[i].dimension()), reference.segment(row, laws[i].dimension()), size);
   };
   for (const IslandFamily& family : part.solutions.families)
   {
@@ -103,16 +103,9 @@ void compare(const Eigen::MatrixXd& W, const Eigen::VectorXd& q, const std::vect
         unique = unique && isSame(W * ray, Eigen::VectorXd::Zero(q.size()), W.cwiseAbs().maxCoeff() * length);
         look(size / length * ray, Eigen::VectorXd::Zero(ray.size()));
       }
-      if (!piece.vertices_complete)  // one point of a set that is not listed
-      {
-        unique = unique && piece.dimension == 0;
-        for (size_t i = 0; i < laws.size(); ++i)
-          same_impulse[i] = same_impulse[i] && piece.modes[i] == LawMode::OPEN;
-        // All rows at rest: nothing of u is left to differ.
-        const bool at_rest = std::all_of(piece.modes.begin(), piece.modes.end(),
-                                         [](LawMode mode) { return mode == LawMode::STICK; });
-        unique = unique || (at_rest && isSame(W * piece.vertices.front() + q, u_family, speed));
-      }
+      unique = unique && piece.unique_velocity;
+      for (size_t i = 0; i < laws.size() && !piece.vertices_complete; ++i)  // one point of a set that is not listed
+        same_impulse[i] = same_impulse[i] && piece.modes[i] == LawMode::OPEN;
     }
     part.unique_velocity.push_back(unique);
     part.one_velocity = part.one_velocity && unique && isSame(u_family, u_first, speed);
@@ -150,6 +143,7 @@ SolutionPiece product(const SolutionPiece& a, const SolutionPiece& b, int max_ve
       result.modes[i] = b.modes[i];
   result.dimension = a.dimension + b.dimension;
   result.bounded = a.bounded && b.bounded;
+  result.unique_velocity = a.unique_velocity && b.unique_velocity;
   const bool listed = a.vertices.size() * b.vertices.size() <= static_cast<size_t>(max_vertices);
   result.vertices_complete = a.vertices_complete && b.vertices_complete && listed;
   if (listed)
@@ -279,8 +273,9 @@ void diagnose(const Problem& problem, bool consistent, EnumerationReport& report
     if (report.diagnosis == "PAINLEVE_INDETERMINATE")
       report.message += ", different velocities: Painleve's paradox, indeterminate";
     if (!report.complete)
-      report.message += ", and perhaps more: " + (report.unresolved > 0 ? plural(static_cast<double>(report.unresolved), "unresolved node")
-                                                                          : std::string("the search was cut short"));
+      report.message += ", and perhaps more: " +
+                        (report.unresolved > 0 ? plural(static_cast<double>(report.unresolved), "unresolved node")
+                                               : std::string("the search was cut short"));
   }
 }
 
@@ -300,7 +295,8 @@ bool search(const DelassusProblem& problem, const EnumerateOptions& options, con
     const auto size = static_cast<Eigen::Index>(part.rows.size());
     if (size > options.max_rows)
     {
-      report.message = "an island has " + std::to_string(size) + " rows, max_rows is " + std::to_string(options.max_rows);
+      report.message =
+          "an island has " + std::to_string(size) + " rows, max_rows is " + std::to_string(options.max_rows);
       continue;
     }
     Eigen::MatrixXd block(size, size);
@@ -324,7 +320,8 @@ bool search(const DelassusProblem& problem, const EnumerateOptions& options, con
     report.families = std::move(families);
   else
     report.unique_impulses.clear();
-  std::stable_sort(report.families.begin(), report.families.end(), [](const SolutionFamily& a, const SolutionFamily& b)
+  std::stable_sort(report.families.begin(), report.families.end(),
+                   [](const SolutionFamily& a, const SolutionFamily& b)
                    { return (a.dimension == 0) > (b.dimension == 0); });
   std::sort(report.unique_impulses.begin(), report.unique_impulses.end());
   for (SolutionFamily& family : report.families)
@@ -339,10 +336,7 @@ bool search(const DelassusProblem& problem, const EnumerateOptions& options, con
 class Clock
 {
 public:
-  double seconds() const
-  {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
 private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

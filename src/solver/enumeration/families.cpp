@@ -17,12 +17,13 @@ bool isSame(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
 
 bool shareVertex(const SolutionPiece& a, const SolutionPiece& b)
 {
-  return std::any_of(a.vertices.begin(), a.vertices.end(),
-                     [&](const Eigen::VectorXd& vertex)
-                     {
-                       return std::any_of(b.vertices.begin(), b.vertices.end(), [&](const Eigen::VectorXd& other)
-                                          { return isSame(vertex, other); });
-                     });
+  return std::any_of(
+      a.vertices.begin(), a.vertices.end(),
+      [&](const Eigen::VectorXd& vertex)
+      {
+        return std::any_of(
+            b.vertices.begin(), b.vertices.end(), [&](const Eigen::VectorXd& other) { return isSame(vertex, other); });
+      });
 }
 
 bool slides(const Leaf& leaf)

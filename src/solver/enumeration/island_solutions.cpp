@@ -14,8 +14,8 @@ IslandSolutions enumerateIsland(const Eigen::MatrixXd& W, const Eigen::VectorXd&
     if (island.consistent)
     {
       result.families.emplace_back();
-      result.families.front().pieces.push_back({std::vector<LawMode>(laws.size(), LawMode::STICK), 0, true, true,
-                                                {island.p}, {}});
+      result.families.front().pieces.push_back(
+          {std::vector<LawMode>(laws.size(), LawMode::STICK), 0, true, true, true, {island.p}, {}});
     }
     return result;
   }

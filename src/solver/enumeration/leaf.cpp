@@ -12,6 +12,7 @@ namespace
 constexpr double RANK = 1e-10;  ///< of equations whose data are about one
 constexpr double CONSTANT = 1e-10;  ///< an inequality whose coefficients are that small says nothing
 constexpr double SAME_POINT = 1e-7;  ///< relative distance of points that count as one
+constexpr double SAME_VELOCITY = 1e-9;  ///< change of u over one of r; data are about one
 constexpr int MAX_CUTS = 200;
 
 /// The cell's equations for its free columns: rows x = y_F.
@@ -159,7 +160,11 @@ void describeByPoint(Relaxation& relaxation, const Equations& equations, Leaf& l
   const Eigen::MatrixXd implied = columnsOf(relaxation.impliedEquations(), equations.free);
   Eigen::MatrixXd all(equations.matrix.rows() + implied.rows(), equations.matrix.cols());
   all << equations.matrix, implied;
-  leaf.piece.dimension = static_cast<int>(nullSpace(all).cols());
+  const Eigen::MatrixXd directions = nullSpace(all);
+  leaf.piece.dimension = static_cast<int>(directions.cols());
+  leaf.piece.unique_velocity =
+      directions.cols() == 0 ||
+      (columnsOf(relaxation.velocities(), equations.free) * directions).cwiseAbs().maxCoeff() < SAME_VELOCITY;
   leaf.piece.vertices_complete = leaf.piece.dimension == 0;
   if (!relaxation.leavesCones(leaf.cell))
     point = relaxation.point();  // in the relative interior of the polyhedron and in the cones

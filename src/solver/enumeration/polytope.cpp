@@ -58,8 +58,8 @@ private:
     const auto common = a.on & b.on;
     if (static_cast<Eigen::Index>(common.count()) < rows_.cols() - 2)
       return false;
-    return std::none_of(rays_.begin(), rays_.end(), [&](const Ray& other)
-                        { return &other != &a && &other != &b && (common & ~other.on).none(); });
+    return std::none_of(rays_.begin(), rays_.end(),
+                        [&](const Ray& other) { return &other != &a && &other != &b && (common & ~other.on).none(); });
   }
 
   bool cut(size_t index)

@@ -363,7 +363,8 @@ bool Relaxation::provesInfeasible(const Eigen::VectorXd& multipliers) const
       if (z[i] == 0.0)
         continue;
       const double reach = bound_ * A_.row(i).lpNorm<1>();
-      const double lower = std::max(row_lower_[i], -reach), upper = std::min(row_upper_[i], reach);
+      const double lower = row_lower_[i] == -INFINITE ? -reach : row_lower_[i];
+      const double upper = row_upper_[i] == INFINITE ? reach : row_upper_[i];
       const double most = std::max(z[i] * lower, z[i] * upper);
       high += most;
       terms += std::abs(most);
@@ -378,8 +379,9 @@ double Relaxation::violation(int law, LawMode mode) const
 {
   const auto index = static_cast<size_t>(law);
   const ModeBounds bounds = modeBounds(island_.laws[index], mode);
-  const auto beyond = [](double x, const Interval& interval)
-  { return std::max({0.0, interval.lower - x, x - interval.upper}); };
+  const auto beyond = [](double x, const Interval& interval) {
+    return std::max({0.0, interval.lower - x, x - interval.upper});
+  };
   const int first = island_.offsets[index], dimension = island_.laws[index].dimension();
   const Eigen::VectorXd u = U_.middleRows(first, dimension) * y_ + island_.q.segment(first, dimension);
   if (mode == LawMode::SLIDE)
@@ -434,8 +436,8 @@ std::vector<bool> Relaxation::canRise(const std::vector<Slack>& slacks, bool ave
         costs[index] -= slack.sign;
       else
         costs -= slack.sign * A_.row(index).transpose();
-      (slack.sign > 0.0 ? upper : lower)[index] =
-          slack.sign > 0.0 ? std::min(upper[index], lower[index] + RAISED) : std::max(lower[index], upper[index] - RAISED);
+      (slack.sign > 0.0 ? upper : lower)[index] = slack.sign > 0.0 ? std::min(upper[index], lower[index] + RAISED)
+                                                                   : std::max(lower[index], upper[index] - RAISED);
     }
     if (!any)
       break;
@@ -460,6 +462,18 @@ std::vector<bool> Relaxation::canRise(const std::vector<Slack>& slacks, bool ave
     y_ = sum / count;
   program_.setBounds(column_lower_, column_upper_, row_lower_, row_upper_);
   return rises;
+}
+
+/** sign u <= 0 on a row throughout the cell solved last. */
+bool Relaxation::staysBelow(int row, double sign)
+{
+  const Eigen::VectorXd slope = A_.row(row);
+  if (sign * (slope.dot(y_) + shift_[row]) > ZERO)
+    return false;
+  program_.setCosts(-sign * slope);
+  const bool bounded = program_.solvePrimal(SIMPLEX_ITERATIONS);
+  program_.setCosts(Eigen::VectorXd::Zero(columns()));
+  return bounded && sign * (slope.dot(program_.solution()) + shift_[row]) <= ZERO;
 }
 
 bool Relaxation::isContained(const Cell& cell)
@@ -498,19 +512,10 @@ bool Relaxation::isContained(const Cell& cell)
       contained = k + 1 < owners.size() && owners[k + 1] == owners[k] && !rises[k + 1];
     else if (mode != LawMode::OPEN || !isFrictional(law))
       contained = true;
-    else if (law.type == LawType::COULOMB_2D)
-    {
-      // Open and u_N = 0 throughout: right, left or both (stick) when u_T keeps its sign.
-      const int row = island_.offsets[owners[k]] + 1;
-      const Eigen::VectorXd slope = A_.row(row);
-      for (const double sign : {1.0, -1.0})
-      {
-        program_.setCosts(-sign * slope);
-        const bool bounded = program_.solvePrimal(SIMPLEX_ITERATIONS);
-        program_.setCosts(Eigen::VectorXd::Zero(columns()));
-        contained = contained || (bounded && sign * (slope.dot(program_.solution()) + shift_[row]) <= ZERO);
-      }
-    }
+    else if (law.type == LawType::COULOMB_2D)  // right, left or (both) stick where u_T keeps its sign
+      contained = staysBelow(island_.offsets[owners[k]] + 1, 1.0) || staysBelow(island_.offsets[owners[k]] + 1, -1.0);
+    else
+      contained = isZero(island_.offsets[owners[k]] + 1) && isZero(island_.offsets[owners[k]] + 2);
   }
   y_ = point;
   return contained;

@@ -76,6 +76,8 @@ public:
   const Eigen::VectorXd& columnUpper() const { return column_upper_; }
   const Eigen::VectorXd& rowLower() const { return row_lower_; }
   const Eigen::VectorXd& rowUpper() const { return row_upper_; }
+  /** @brief u' = U y + q'. */
+  const Eigen::MatrixXd& velocities() const { return U_; }
   /** @brief r' = T y. */
   const Eigen::MatrixXd& generators() const { return T_; }
 
@@ -95,6 +97,8 @@ private:
   void changeEntries(int row, const Eigen::VectorXd& values);
   bool provesInfeasible(const Eigen::VectorXd& multipliers) const;
   Feasibility solveElastic();
+  bool staysBelow(int row, double sign);
+  bool isZero(int row) { return staysBelow(row, 1.0) && staysBelow(row, -1.0); }
   double value(const Slack& slack) const;
   std::vector<bool> canRise(const std::vector<Slack>& slacks, bool average);
   int columns() const { return static_cast<int>(T_.cols()); }

@@ -145,7 +145,8 @@ void Search::closeWedges(Cell& cell)
   const WedgeContent content = resolveWedges(island_, relaxation_, cell, leaf);
   if (content == WedgeContent::NONE)
     return;
-  const auto widest = static_cast<size_t>(std::max_element(cell.halves.begin(), cell.halves.end()) - cell.halves.begin());
+  const auto widest =
+      static_cast<size_t>(std::max_element(cell.halves.begin(), cell.halves.end()) - cell.halves.begin());
   if (leaf && (content == WedgeContent::ONE || first_ || cell.halves[widest] < options_.min_angle))
   {
     result_.leaves.push_back(*leaf);

@@ -167,8 +167,7 @@ public:
   {
     const double allowed = TOLERANCE + ROUND_OFF * impulses(x).lpNorm<Eigen::Infinity>();
     for (Eigen::Index k = 0; k < slides(); ++k)
-      if (x[place(k)] < -allowed || x[place(k) + 1] < -allowed ||
-          distance(x, k) > (1.0 + margin) * half(k) + TOLERANCE)
+      if (x[place(k)] < -allowed || x[place(k) + 1] < -allowed || distance(x, k) > (1.0 + margin) * half(k) + TOLERANCE)
         return false;
     const Eigen::VectorXd r = impulses(x), u = island_.W * r + island_.q;
     for (Eigen::Index j = 0; j < linear(); ++j)
@@ -268,8 +267,7 @@ private:
     for (Eigen::Index k = 0; k < slides(); ++k)
     {
       impulse_change[row(k)] = reach[0];
-      impulse_change.segment<2>(row(k) + 1).setConstant(friction(k) *
-                                                        (reach[0] + std::abs(x[place(k)]) * turn[k]));
+      impulse_change.segment<2>(row(k) + 1).setConstant(friction(k) * (reach[0] + std::abs(x[place(k)]) * turn[k]));
     }
     const Eigen::VectorXd velocity_change = island_.W.cwiseAbs() * impulse_change;
     for (Eigen::Index k = 0; k < slides(); ++k)
@@ -287,7 +285,8 @@ private:
       const double by_angle = reach[0] + std::abs(x[place(k)]) * turn[k];
       for (Eigen::Index i = 0; i < size(); ++i)
       {
-        const Eigen::Index at = i < linear() ? rows_[static_cast<size_t>(i)] : row((i - linear()) / 3) + (i - linear()) % 3;
+        const Eigen::Index at =
+            i < linear() ? rows_[static_cast<size_t>(i)] : row((i - linear()) / 3) + (i - linear()) % 3;
         D(i, place(k)) = tangential[at] * turn[k];
         D(i, place(k) + 2) = tangential[at] * by_angle;
       }
@@ -334,6 +333,7 @@ WedgeContent resolveWedges(const ScaledIsland& island, const Relaxation& relaxat
       factor.compute(equations.jacobian(x));
       leaf->piece.dimension = static_cast<int>(equations.size() - factor.rank());
       leaf->piece.vertices_complete = leaf->piece.dimension == 0;
+      leaf->piece.unique_velocity = leaf->piece.dimension == 0;  // of more is known at one point only
     }
   }
   return !injective ? WedgeContent::UNKNOWN : leaf ? WedgeContent::ONE : WedgeContent::NONE;

@@ -71,7 +71,7 @@ const char* toString(Uniqueness uniqueness);
 
 struct EnumerateOptions
 {
-  int max_nodes = 200000;  ///< of an island's search tree, >= 1
+  int max_nodes = 5000000;  ///< of an island's search tree, >= 1
   double time_limit = 0.0;  ///< wall clock [s], 0 = none
   int max_rows = 120;  ///< of an island; above, nothing is tried, >= 1
   int max_vertices = 1000;  ///< kept of a polytope; with more only its dimension is reported, >= 2
@@ -91,6 +91,7 @@ struct SolutionPiece
   std::vector<LawMode> modes;  ///< one a law; BILATERAL laws STICK
   int dimension = 0;  ///< of the set of impulses
   bool bounded = true;
+  bool unique_velocity = true;
   bool vertices_complete = true;  ///< false: more than max_vertices, or (3D) a cone that is no polytope
   std::vector<Eigen::VectorXd> vertices;  ///< r, at least one point of the piece [N s]
   std::vector<Eigen::VectorXd> rays;  ///< directions in which r may grow without bound
