@@ -10,7 +10,7 @@
 #include "frictional_contact_sim/problem/existence.h"
 #include "frictional_contact_sim/problem/islands.h"
 #include "frictional_contact_sim/problem/residual.h"
-#include "island_solutions.h"
+#include "island_product.h"
 
 namespace frictional_contact_sim
 {
@@ -20,15 +20,6 @@ namespace
 constexpr double SAME = 1e-6;
 /// G v + b above this share of its terms: redundant bilateral rows that contradict each other.
 constexpr double CONTRADICTION = 1e-8;
-
-/// An island's laws and rows in the whole, and what was found.
-struct IslandPart
-{
-  std::vector<int> laws, rows;
-  IslandSolutions solutions;
-  std::vector<bool> unique_velocity;  ///< of each family
-  bool one_velocity = true;  ///< of all of them
-};
 
 std::vector<IslandPart> split(const DelassusProblem& problem)
 {
@@ -113,74 +104,6 @@ void compare(const Eigen::MatrixXd& W, const Eigen::VectorXd& q, const std::vect
   for (size_t i = 0; i < laws.size(); ++i)
     if (same_impulse[i])
       unique_impulses.push_back(part.laws[i]);
-}
-
-/// A piece of one island as one of the whole, its other rows zero.
-SolutionPiece spread(const SolutionPiece& piece, const IslandPart& part, size_t laws, Eigen::Index rows)
-{
-  SolutionPiece result = piece;
-  result.modes.assign(laws, LawMode::UNDECIDED);
-  for (size_t i = 0; i < part.laws.size(); ++i)
-    result.modes[static_cast<size_t>(part.laws[i])] = piece.modes[i];
-  const auto place = [&](Eigen::VectorXd& x)
-  {
-    Eigen::VectorXd whole = Eigen::VectorXd::Zero(rows);
-    for (size_t i = 0; i < part.rows.size(); ++i)
-      whole[part.rows[i]] = x[static_cast<Eigen::Index>(i)];
-    x = whole;
-  };
-  std::for_each(result.vertices.begin(), result.vertices.end(), place);
-  std::for_each(result.rays.begin(), result.rays.end(), place);
-  return result;
-}
-
-SolutionPiece product(const SolutionPiece& a, const SolutionPiece& b, int max_vertices)
-{
-  SolutionPiece result;
-  result.modes = a.modes;
-  for (size_t i = 0; i < b.modes.size(); ++i)
-    if (b.modes[i] != LawMode::UNDECIDED)
-      result.modes[i] = b.modes[i];
-  result.dimension = a.dimension + b.dimension;
-  result.bounded = a.bounded && b.bounded;
-  result.unique_velocity = a.unique_velocity && b.unique_velocity;
-  const bool listed = a.vertices.size() * b.vertices.size() <= static_cast<size_t>(max_vertices);
-  result.vertices_complete = a.vertices_complete && b.vertices_complete && listed;
-  if (listed)
-    for (const Eigen::VectorXd& x : a.vertices)
-      for (const Eigen::VectorXd& y : b.vertices)
-        result.vertices.emplace_back(x + y);
-  else
-    result.vertices.emplace_back(middle(a) + middle(b));
-  result.rays = a.rays;
-  result.rays.insert(result.rays.end(), b.rays.begin(), b.rays.end());
-  return result;
-}
-
-/// Families of the islands before, times those of the next one.
-std::vector<SolutionFamily> product(const std::vector<SolutionFamily>& before, const IslandPart& part, size_t laws,
-                                    Eigen::Index rows, const EnumerateOptions& options)
-{
-  std::vector<SolutionFamily> result;
-  const auto limit = static_cast<size_t>(options.max_families);
-  for (const SolutionFamily& a : before)
-    for (size_t k = 0; k < part.solutions.families.size() && result.size() < limit; ++k)
-    {
-      const IslandFamily& b = part.solutions.families[k];
-      SolutionFamily family;
-      family.dimension = a.dimension + b.dimension();
-      family.unique_velocity = a.unique_velocity && part.unique_velocity[k];
-      family.proved = a.proved && b.proved;
-      family.bounded = a.bounded;
-      for (const SolutionPiece& piece : b.pieces)
-        family.bounded = family.bounded && piece.bounded;
-      for (const SolutionPiece& x : a.pieces)
-        for (const SolutionPiece& y : b.pieces)
-          if (family.pieces.size() < limit)
-            family.pieces.push_back(product(x, spread(y, part, laws, rows), options.max_vertices));
-      result.push_back(std::move(family));
-    }
-  return result;
 }
 
 std::vector<int> jammingContacts(const DelassusProblem& problem)
