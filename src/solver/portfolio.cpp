@@ -324,11 +324,13 @@ bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveCont
 
 /**
  * The complete search, on few rows, where all else has failed: either it has an answer, or it says that there is none,
- * or why it does not know. Its nodes do not count as iterations: the others have used those up.
+ * or why it does not know. Its nodes do not count as iterations: the others have used those up. Who allows fewer
+ * iterations than it has nodes is in a hurry, and is not kept.
  */
 bool Portfolio::tryEnumerate(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
-  if (problem.W.rows() > options_.enumerate_rows || context.timeIsUp())
+  if (problem.W.rows() > options_.enumerate_rows || context.max_iterations < options_.enumerate_nodes ||
+      context.timeIsUp())
     return false;
   const int used = used_;
   SolveContext own = context;
@@ -388,7 +390,8 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
     result.solver = interior_point_->name();
     done = true;
   }
-  const bool searched = !done && problem.W.rows() <= options_.enumerate_rows;
+  const bool searched =
+      !done && problem.W.rows() <= options_.enumerate_rows && context.max_iterations >= options_.enumerate_nodes;
   done = done || tryEnumerate(problem, context, result);
   result.solution.r = best_r_;
   if (done)

@@ -177,6 +177,8 @@ void Relaxation::setBounds(const Cell& cell)
 Feasibility Relaxation::solve(const Cell& cell)
 {
   setBounds(cell);
+  if (hasImpossibleRow())
+    return Feasibility::INFEASIBLE;
   program_.setBounds(column_lower_, column_upper_, row_lower_, row_upper_);
   if (program_.solve(SIMPLEX_ITERATIONS))
   {
@@ -220,6 +222,26 @@ Feasibility Relaxation::solveElastic()
     return Feasibility::UNPROVED;
   y_ = x.head(columns());
   return Feasibility::FEASIBLE;
+}
+
+/** A row that the columns' bounds alone keep out of its own, among them rows that nothing moves. */
+bool Relaxation::hasImpossibleRow() const
+{
+  for (Eigen::Index i = 0; i < A_.rows(); ++i)
+  {
+    double low = 0.0, high = 0.0;
+    for (Eigen::Index j = 0; j < A_.cols(); ++j)
+    {
+      const double a = A_(i, j);
+      if (a == 0.0)
+        continue;
+      low += a > 0.0 ? a * column_lower_[j] : a * column_upper_[j];
+      high += a > 0.0 ? a * column_upper_[j] : a * column_lower_[j];
+    }
+    if (low > row_upper_[i] + TOLERANCE || high < row_lower_[i] - TOLERANCE)
+      return true;
+  }
+  return false;
 }
 
 bool Relaxation::meets(const Cell& a, const Cell& b)

@@ -97,6 +97,7 @@ private:
   void changeEntries(int row, const Eigen::VectorXd& values);
   bool provesInfeasible(const Eigen::VectorXd& multipliers) const;
   Feasibility solveElastic();
+  bool hasImpossibleRow() const;
   bool staysBelow(int row, double sign);
   bool isZero(int row) { return staysBelow(row, 1.0) && staysBelow(row, -1.0); }
   double value(const Slack& slack) const;
