@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "contact_kinematics.h"
-#include "linear_program.h"
+#include "frictional_contact_sim/problem/linear_program.h"
 
 namespace frictional_contact_sim
 {

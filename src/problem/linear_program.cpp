@@ -1,4 +1,4 @@
-#include "linear_program.h"
+#include "frictional_contact_sim/problem/linear_program.h"
 
 #include <coin/Clp_C_Interface.h>
 
@@ -76,6 +76,52 @@ bool LinearProgram::solve(int max_iterations)
   loaded_ = true;
   iterations_ += Clp_numberIterations(clp);
   return Clp_isProvenOptimal(clp) != 0;
+}
+
+LinearProgramStatus LinearProgram::status() const
+{
+  Clp_Simplex* clp = model_->clp;
+  return Clp_isProvenOptimal(clp) != 0            ? LinearProgramStatus::OPTIMAL
+         : Clp_isProvenPrimalInfeasible(clp) != 0 ? LinearProgramStatus::INFEASIBLE
+         : Clp_isProvenDualInfeasible(clp) != 0   ? LinearProgramStatus::UNBOUNDED
+                                                  : LinearProgramStatus::STOPPED;
+}
+
+void LinearProgram::setBounds(const Eigen::VectorXd& column_lower, const Eigen::VectorXd& column_upper,
+                              const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper)
+{
+  Clp_chgColumnLower(model_->clp, column_lower.data());
+  Clp_chgColumnUpper(model_->clp, column_upper.data());
+  Clp_chgRowLower(model_->clp, row_lower.data());
+  Clp_chgRowUpper(model_->clp, row_upper.data());
+}
+
+void LinearProgram::setCosts(const Eigen::VectorXd& costs)
+{
+  Clp_chgObjCoefficients(model_->clp, costs.data());
+}
+
+void LinearProgram::setEntry(int row, int column, double value)
+{
+  Clp_modifyCoefficient(model_->clp, row, column, value, true);
+}
+
+bool LinearProgram::solvePrimal(int max_iterations)
+{
+  Clp_setMaximumIterations(model_->clp, max_iterations);
+  Clp_primal(model_->clp, 0);
+  iterations_ += Clp_numberIterations(model_->clp);
+  return Clp_isProvenOptimal(model_->clp) != 0;
+}
+
+Eigen::VectorXd LinearProgram::infeasibilityRay() const
+{
+  double* ray = Clp_infeasibilityRay(model_->clp);
+  if (ray == nullptr)
+    return {};
+  const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(ray, Clp_numberRows(model_->clp));
+  Clp_freeRay(model_->clp, ray);
+  return result;
 }
 
 Eigen::VectorXd LinearProgram::solution() const

@@ -7,6 +7,7 @@
 #include "frictional_contact_sim/solver/ac_newton.h"
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
+#include "frictional_contact_sim/solver/enumeration/enumerate.h"
 #include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/haslinger.h"
@@ -98,6 +99,10 @@ const OptionTable<PortfolioOptions>& PortfolioOptions::table()
                        {"later_sweeps", &PortfolioOptions::later_sweeps, atLeast(1), "sweeps",
                         "of the later rounds, doubled every round"},
                        {"max_rounds", &PortfolioOptions::max_rounds, atLeast(0), "rounds", "of sweeps and Newton"},
+                       {"enumerate_rows", &PortfolioOptions::enumerate_rows, atLeast(0), "rows",
+                        "up to which the complete search ends it where all else has failed"},
+                       {"enumerate_nodes", &PortfolioOptions::enumerate_nodes, atLeast(1), "nodes",
+                        "its budget, beside that of iterations"},
                    });
   return table;
 }
@@ -121,6 +126,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , interior_point_(std::make_unique<InteriorPoint>())
   , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
+  , enumerate_(std::make_unique<Enumerate>())
 {
   options_.validate();
   GaussSeidelOptions sweeps;
@@ -316,6 +322,24 @@ bool Portfolio::tryInteriorPoint(const DelassusProblem& problem, const SolveCont
   return false;
 }
 
+/**
+ * The complete search, on few rows, where all else has failed: either it has an answer, or it says that there is none,
+ * or why it does not know. Its nodes do not count as iterations: the others have used those up. Who allows fewer
+ * iterations than it has nodes is in a hurry, and is not kept.
+ */
+bool Portfolio::tryEnumerate(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+{
+  if (problem.W.rows() > options_.enumerate_rows || context.max_iterations < options_.enumerate_nodes ||
+      context.timeIsUp())
+    return false;
+  const int used = used_;
+  SolveContext own = context;
+  own.max_iterations = used + options_.enumerate_nodes;
+  const bool done = run(*enumerate_, problem, own, options_.enumerate_nodes, result);
+  used_ = result.iterations = std::min(used_, std::max(used, context.max_iterations));
+  return done;
+}
+
 void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   used_ = 0;
@@ -366,6 +390,9 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
     result.solver = interior_point_->name();
     done = true;
   }
+  const bool searched =
+      !done && problem.W.rows() <= options_.enumerate_rows && context.max_iterations >= options_.enumerate_nodes;
+  done = done || tryEnumerate(problem, context, result);
   result.solution.r = best_r_;
   if (done)
   {
@@ -375,7 +402,8 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   result.status = context.timeIsUp()                ? SolverStatus::TIME_LIMIT
                   : used_ >= context.max_iterations ? SolverStatus::MAX_ITERATIONS
                                                     : SolverStatus::STAGNATED;
-  result.message = "no method of the portfolio reached the tolerance";
+  const std::string why = searched && !result.message.empty() ? "; enumerate: " + result.message : "";
+  result.message = "no method of the portfolio reached the tolerance" + why;
 }
 
 }  // namespace frictional_contact_sim

@@ -14,6 +14,7 @@
 #include "frictional_contact_sim/solver/cadoux_newton.h"
 #include "frictional_contact_sim/solver/ds_fixed_point.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
+#include "frictional_contact_sim/solver/enumeration/enumerate.h"
 #include "frictional_contact_sim/solver/fb_bfgs.h"
 #include "frictional_contact_sim/solver/fb_levenberg_marquardt.h"
 #include "frictional_contact_sim/solver/fb_newton.h"
@@ -110,6 +111,9 @@ const std::vector<SolverEntry>& solverRegistry()
       entry<LcpLemke, LcpLemkeOptions>("lcp_lemke",
                                        "Lemke's pivoting, exact in 2D, polyhedral cone with turned facets in 3D",
                                        "Lemke (1965); Stewart, Trinkle (1996); Cadoux (2009), 4.1", OperatorUse::DENSE),
+      entry<Enumerate, EnumerateOptions>("enumerate",
+                                         "tree search over the modes: a first solution, or the proof that none exists",
+                                         "Cadoux (2009), 1.4, 4.7.7, conclusion of part I", OperatorUse::DENSE),
   };
   return registry;
 }

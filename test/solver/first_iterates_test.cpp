@@ -137,7 +137,8 @@ TEST(FirstIteratesTest, EveryKeyIsComparedWithItsFormula)
                                            "cadoux_fixed_point",
                                            "cadoux_newton",
                                            "cadoux_broyden",
-                                           "lcp_lemke"};
+                                           "lcp_lemke",
+                                           "enumerate"};
   for (const SolverEntry& entry : solverRegistry())
     EXPECT_NE(std::find(tested.begin(), tested.end(), entry.name), tested.end()) << entry.name;
   EXPECT_EQ(tested.size(), solverRegistry().size());

@@ -16,6 +16,8 @@
  *      longer rounds; above newton_last_rows instead of these Haslinger's fixed point, which
  *      needs products with W only; on more than few rows Newton with sweeps, before it above newton_last_rows, else at
  *      the end of a round; above swept_last_rows nothing is factored
+ *   3  few rows, and everything has failed: the complete search (solver/enumeration/enumerate.h), which finds what
+ *      nothing else does (a subset-sum machine) or proves that no solution exists; the message says so
  * Never returns an iterate worse than one it has had, the guess included. `tried` lists the methods run, `solver` names
  * the one whose iterate is returned.
  *
@@ -36,6 +38,7 @@ class AcNewton;
 class Haslinger;
 class InteriorPoint;
 class SweptNewton;
+class Enumerate;
 
 struct PortfolioOptions
 {
@@ -55,6 +58,8 @@ struct PortfolioOptions
   int newton_steps = 200;  ///< Newton's budget after sweeps, doubled every round, >= 1
   int later_sweeps = 300;  ///< sweeps of the later rounds, doubled every round, >= 1
   int max_rounds = 4;  ///< rounds of step 2, >= 0
+  int enumerate_rows = 12;  ///< up to this many rows the complete search ends it, >= 0
+  int enumerate_nodes = 1000;  ///< its budget, >= 1
 
   /** @brief What each is, as data. */
   static const OptionTable<PortfolioOptions>& table();
@@ -87,6 +92,7 @@ private:
                  SolverResult& result);
   bool tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  bool tryEnumerate(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, const SolveContext& context, int budget,
            SolverResult& result, double margin = 1.0);
 
@@ -97,6 +103,7 @@ private:
   std::unique_ptr<InteriorPoint> interior_point_;
   std::unique_ptr<Haslinger> haslinger_;  ///< gives up when it is slow
   std::unique_ptr<SweptNewton> swept_newton_;
+  std::unique_ptr<Enumerate> enumerate_;  ///< ends the portfolio on few rows
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
   Eigen::VectorXd velocity_, best_r_, first_r_, apart_r_;

@@ -3,7 +3,8 @@
  * @file linear_program.h
  * @brief min c.x, lower <= x <= upper, row_lower <= A x <= row_upper, by the simplex method of Clp, silently.
  *
- * Rows may be added after a solve; the next one starts from the last basis.
+ * Rows may be added, bounds, costs and entries changed after a solve; the next one starts from the last basis, which is
+ * what a search that fixes one thing after another needs.
  */
 #include <Eigen/Core>
 #include <memory>
@@ -11,6 +12,15 @@
 
 namespace frictional_contact_sim
 {
+/** @brief How a solve ended. */
+enum class LinearProgramStatus
+{
+  OPTIMAL,
+  INFEASIBLE,  ///< infeasibilityRay() says why
+  UNBOUNDED,
+  STOPPED  ///< iterations exhausted, or the simplex method lost its digits
+};
+
 class LinearProgram
 {
 public:
@@ -33,7 +43,25 @@ public:
    */
   bool solve(int max_iterations);
 
+  /** @brief How the last solve ended. */
+  LinearProgramStatus status() const;
+
+  /** @brief New bounds of all columns and rows; only after a solve, sizes as added so far. */
+  void setBounds(const Eigen::VectorXd& column_lower, const Eigen::VectorXd& column_upper,
+                 const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
+  /** @brief New costs of all columns; only after a solve. */
+  void setCosts(const Eigen::VectorXd& costs);
+  /** @brief A new entry of A; only after a solve. */
+  void setEntry(int row, int column, double value);
+  /** @brief Goes on by the primal simplex method: what follows a change of costs. @return true when optimal */
+  bool solvePrimal(int max_iterations);
+
   Eigen::VectorXd solution() const;
+  /**
+   * @brief Multipliers y of the rows that prove INFEASIBLE: the range of y.(A x) over the columns' bounds and that over
+   * the rows' do not meet. The sign is the simplex method's business; empty when there is none.
+   */
+  Eigen::VectorXd infeasibilityRay() const;
   /** @brief Multipliers of the rows: c - A^T y is 0 for columns between their bounds, y >= 0 where only a lower bound
    * holds. */
   Eigen::VectorXd prices() const;
