@@ -140,10 +140,9 @@ std::set<std::string> StepPublisher::losslessTopics(const std::vector<std::strin
 
 std::uint32_t StepPublisher::subscribers(const std::string& topic) const
 {
-  std::vector<const ros::Publisher*> publishers = {&joint_states_publisher_, &contacts_publisher_,
-                                                   &step_report_publisher_,  &certificate_publisher_,
-                                                   &markers_publisher_,      &tf_publisher_,
-                                                   &bodies_publisher_};
+  std::vector<const ros::Publisher*> publishers = {
+      &joint_states_publisher_, &contacts_publisher_, &step_report_publisher_, &certificate_publisher_,
+      &markers_publisher_,      &tf_publisher_,       &bodies_publisher_};
   if (publish_clock_)
     publishers.push_back(&clock_publisher_);
   for (const ros::Publisher& publisher : odometry_publishers_)

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "../linear_program.h"
 #include "frictional_contact_sim/problem/existence.h"
+#include "frictional_contact_sim/problem/linear_program.h"
 
 namespace frictional_contact_sim
 {

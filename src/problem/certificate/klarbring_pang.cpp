@@ -7,7 +7,7 @@
 
 #include "../contact_kinematics.h"
 #include "../existence_certificate.h"
-#include "../linear_program.h"
+#include "frictional_contact_sim/problem/linear_program.h"
 
 namespace frictional_contact_sim
 {
