@@ -4,11 +4,14 @@
 
 #include "frictional_contact_sim/ros/conversions.h"
 #include "frictional_contact_sim/ros/services.h"
+#include "frictional_contact_sim/solver/enumeration/enumeration.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double LONGEST_ENUMERATION = 10.0;  ///< wall clock [s]
+
 void fillIds(const std::vector<NamedRow>& rows, std::vector<std::uint64_t>& ids)
 {
   ids.clear();
@@ -22,6 +25,25 @@ void fillNames(const std::vector<NamedRow>& rows, std::vector<std::string>& name
   names.clear();
   for (const NamedRow& row : rows)
     names.push_back(row.name);
+}
+
+/** Beside the verdict. The node waits for it. */
+void enumerateStep(const Simulator& simulator, Certify::Response& response)
+{
+  EnumerateOptions options;
+  options.time_limit = LONGEST_ENUMERATION;
+  const EnumerationReport found = enumerate(simulator.problem(), options);
+  response.complete = found.complete;
+  response.solutions = static_cast<std::uint32_t>(found.solutions);
+  response.continua = static_cast<std::uint32_t>(found.continua);
+  for (const SolutionFamily& family : found.families)
+    if (family.dimension == 0)
+      for (const double component : family.representative.v)
+        response.velocities.push_back(component);
+  if (found.uniqueness != Uniqueness::UNKNOWN)
+    response.uniqueness = toMessage(found.uniqueness);
+  response.seconds += found.seconds;
+  response.message += (response.message.empty() || found.message.empty() ? "" : "; ") + found.message;
 }
 }  // namespace
 
@@ -72,8 +94,6 @@ void certifyStep(const Certify::Request& request, const Simulator& simulator, Ce
 {
   if (!std::isfinite(request.bound) || request.bound < 0.0)
     throw RequestError("bound: found " + std::to_string(request.bound) + ", expected >= 0");
-  if (request.enumerate)
-    throw RequestError("enumerate: found true, expected false: solutions are not enumerated yet");
   CertifyOptions options;
   options.bound = request.bound;
   const StepCertificate certificate = simulator.certify(options);
@@ -87,9 +107,10 @@ void certifyStep(const Certify::Request& request, const Simulator& simulator, Ce
   response.uniqueness = toMessage(certificate.uniqueness);
   response.rank = certificate.rank;
   response.condition = certificate.condition;
-  response.complete = false;
   response.seconds = certificate.seconds;
   response.message = certificate.warning.empty() ? certificate.message : certificate.warning;
+  if (request.enumerate)
+    enumerateStep(simulator, response);
 }
 
 }  // namespace frictional_contact_sim

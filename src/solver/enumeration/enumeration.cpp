@@ -308,20 +308,6 @@ const char* toString(LawMode mode)
   return "UNKNOWN";
 }
 
-const char* toString(Uniqueness uniqueness)
-{
-  switch (uniqueness)
-  {
-    case Uniqueness::UNIQUE_V:
-      return "UNIQUE_V";
-    case Uniqueness::MULTIPLE:
-      return "MULTIPLE";
-    case Uniqueness::UNKNOWN:
-      return "UNKNOWN";
-  }
-  return "UNKNOWN";
-}
-
 const OptionTable<EnumerateOptions>& EnumerateOptions::table()
 {
   static const OptionTable<EnumerateOptions> table(

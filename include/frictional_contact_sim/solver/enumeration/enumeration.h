@@ -43,6 +43,7 @@
 #include <string>
 #include <vector>
 
+#include "frictional_contact_sim/problem/certificate/uniqueness.h"
 #include "frictional_contact_sim/problem/delassus_problem.h"
 #include "frictional_contact_sim/problem/incremental_problem.h"
 #include "frictional_contact_sim/solver/option_table.h"
@@ -59,15 +60,6 @@ enum class LawMode
   SLIDE
 };
 const char* toString(LawMode mode);
-
-/** @brief Are the velocities of all solutions the same? */
-enum class Uniqueness
-{
-  UNIQUE_V,  ///< there is a solution, the enumeration is complete, and all have one velocity
-  MULTIPLE,  ///< two solutions with different velocities were found
-  UNKNOWN
-};
-const char* toString(Uniqueness uniqueness);
 
 struct EnumerateOptions
 {
