@@ -5,6 +5,7 @@
  */
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "frictional_contact_sim/problem/certificate/certify.h"
 #include "frictional_contact_sim/problem/certificate/fixed_point_check.h"
@@ -12,6 +13,7 @@
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/residual.h"
 #include "frictional_contact_sim/solver/registry.h"
+#include "progress_bar.h"
 #include "tool_support.h"
 
 namespace
@@ -191,7 +193,9 @@ int run(const Arguments& arguments)
   if (!arguments.solver.empty() && problem.kind == FclibKind::LOCAL)
     throw std::invalid_argument("--solver: " + arguments.file +
                                 " is a local problem, expected a global one: theorem 3.20 is about velocities");
+  std::optional<tools::ProgressBar> progress(std::in_place, 0);
   const Json result = report(arguments, problem);
+  progress.reset();
   if (arguments.json)
     std::cout << result.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
   else

@@ -5,9 +5,11 @@
  */
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/solver/enumeration/enumeration.h"
+#include "progress_bar.h"
 #include "tool_support.h"
 
 namespace
@@ -107,16 +109,11 @@ int run(const Arguments& arguments)
   const EnumerateOptions options = EnumerateOptions::table().read("enumerate", tools::parseOptions(arguments.options));
   const FclibProblem problem = readFclib(arguments.file);
   tools::stopOnSignals();
-  tools::ProgressBar progress(options.max_nodes);
-  long nodes = 0;
-  const auto asked = [&]
-  {
-    progress.update(++nodes);
-    return tools::stop_requested.load();
-  };
+  std::optional<tools::ProgressBar> progress(std::in_place, 0);  // nobody knows how large the tree is
+  const auto asked = [] { return tools::stop_requested.load(); };
   const EnumerationReport found = problem.kind == FclibKind::LOCAL ? enumerate(problem.local, options, asked)
                                                                    : enumerate(problem.global, options, asked);
-  progress.clear();
+  progress.reset();
   report(arguments, found);
   if (tools::stop_requested)
     return tools::INTERRUPTED;

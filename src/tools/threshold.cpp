@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "frictional_contact_sim/simulation/scenario_files.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/threshold.h"
+#include "progress_bar.h"
 #include "tool_support.h"
 
 namespace
@@ -36,7 +38,11 @@ class Search
 {
 public:
   Search(const Arguments& arguments, const std::string& path)
-    : arguments_(arguments), path_(path), expression_(arguments.hold), expected_(expectedRuns()), bar_(100L * expected_)
+    : arguments_(arguments)
+    , path_(path)
+    , expression_(arguments.hold)
+    , expected_(expectedRuns())
+    , bar_(std::in_place, 100L * expected_)
   {
   }
 
@@ -67,6 +73,8 @@ public:
   }
 
   int runs() const { return runs_; }
+  /** Before anything is printed. */
+  void endBar() { bar_.reset(); }
 
 private:
   fcs::Scenario load(double value) const
@@ -83,13 +91,11 @@ private:
     fcs::Scenario scenario = load(value);
     scenario.certify_every = certify_every;
     const int done = runs_++;
-    char text[60];
-    std::snprintf(text, sizeof(text), "run %d, %.6g", runs_, value);
     return fcs::recordRun(scenario,
                           [&](double share)
                           {
                             const double shown = std::min<double>(expected_, done + share);
-                            bar_.update(std::lround(100.0 * shown), text);
+                            bar_->update(std::lround(100.0 * shown));
                           });
   }
 
@@ -105,7 +111,7 @@ private:
   fcs::HoldExpression expression_;
   int expected_;
   int runs_ = 0;
-  fcs::tools::ProgressBar bar_;
+  std::optional<fcs::tools::ProgressBar> bar_;
 };
 
 std::string text(double value)
@@ -161,6 +167,7 @@ int run(const Arguments& arguments)
   certificate["intervals"] = intervals;
   if (widest != nullptr && arguments.certificate)
     certificate["existence"] = search.certify(widest->open_below && !widest->open_above ? widest->to : widest->from);
+  search.endBar();
   Json tried = Json::array();
   for (const auto& [value, held] : result.runs)
     tried.push_back({value, held});
