@@ -88,7 +88,7 @@ TEST(UniquenessTest, ThePlanarMinorsDecideWhetherEveryLoadHasOneSolution)
   Random random(21);
   std::uniform_real_distribution<double> uniform(0.05, 1.5);
   int unique = 0, several = 0;
-  for (int draw = 0; draw < 40; ++draw)
+  for (int draw = 0; draw < 200; ++draw)
   {
     const int n = 1 + draw % 3;
     const Eigen::MatrixXd A = gauss(2 * n, 2 * n + draw % 4, random);
