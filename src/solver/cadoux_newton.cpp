@@ -202,6 +202,8 @@ bool CadouxNewtonStep::land(const DelassusProblem& problem, const SlipMap& map, 
     else
       right_[first] -= map.r()[row] - projectOntoLaw(law, x_[row]);
   }
+  if (active_ == 0)  // everything parts; Eigen does not decompose nothing
+    return r.allFinite();
   const Eigen::VectorXd dr = system_.completeOrthogonalDecomposition().solve(right_.head(active_));
   for (int row = 0; row < problem.W.rows(); ++row)
     if (position_[static_cast<size_t>(row)] >= 0)
