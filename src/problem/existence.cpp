@@ -141,7 +141,9 @@ private:
     Eigen::VectorXd right(stacked.rows());
     right << -kinematics_.w, -kinematics_.b;
     Eigen::VectorXd v;
-    if (stacked.cols() <= DENSE_COLUMNS)
+    if (stacked.rows() == 0 || stacked.cols() == 0)
+      v.setZero(stacked.cols());
+    else if (stacked.cols() <= DENSE_COLUMNS)
     {
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor{Eigen::MatrixXd(stacked)};
       v = factor.solve(right);

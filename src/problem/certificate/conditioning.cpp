@@ -44,6 +44,8 @@ constexpr int MOST_SWEEPS = 40;
  */
 Eigen::VectorXd singularValues(const Eigen::MatrixXd& A)
 {
+  if (A.size() == 0)
+    return Eigen::VectorXd(0);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(A);
   const Eigen::Index rank = factor.rank();
   Eigen::MatrixXd R = factor.matrixR().topRows(rank).template triangularView<Eigen::Upper>();

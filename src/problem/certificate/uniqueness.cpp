@@ -91,6 +91,8 @@ double largestEigenvalue(const Eigen::MatrixXd& matrix)
 /** Infinite where W is singular. */
 double contractionConstant(const Reduced& island)
 {
+  if (island.W.size() == 0)
+    return 0.0;
   const Eigen::MatrixXd symmetric = 0.5 * (island.W + island.W.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(symmetric, Eigen::EigenvaluesOnly);
   const double largest = spectrum.eigenvalues().maxCoeff();
