@@ -27,7 +27,7 @@ Scenario sceneOf(std::uint32_t seed)
 {
   const std::string folder = testing::TempDir() + "robot_generator";
   const test_support::RandomScene scene = randomScene(seed);
-  return loadScenario(writeScene(scene, folder, scene.scenario, scene.name()));
+  return loadScenarioFile(writeScene(scene, folder, scene.scenario, scene.name()));
 }
 
 double someNumber(Dice& dice, double reasonable)
