@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <set>
 
@@ -26,6 +27,7 @@ const std::map<std::string, ServoGains> NO_GAINS;
 Scenario sceneOf(std::uint32_t seed)
 {
   const std::string folder = testing::TempDir() + "robot_generator";
+  std::filesystem::create_directories(folder);
   const test_support::RandomScene scene = randomScene(seed);
   return loadScenarioFile(writeScene(scene, folder, scene.scenario, scene.name()));
 }
