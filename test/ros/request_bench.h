@@ -30,7 +30,7 @@ inline Scenario robotAndBox(bool on_ground)
 {
   Scenario scenario;
   scenario.name = "robot_and_box";
-  scenario.bodies = {bodyFrom("robot", "examples/first_robot.urdf", 0.0, 0.0, 0.05),
+  scenario.bodies = {bodyFrom("robot", "examples/first_robot/first_robot.urdf", 0.0, 0.0, 0.05),
                      bodyFrom("crate", "test/ros/box_10kg.urdf", 2.0, 0.0, 0.1)};
   if (on_ground)
     scenario.ground = GroundSpec();

@@ -164,7 +164,7 @@ TEST(MotionTest, ATurntableCarriesWhatFrictionHoldsAndThrowsOffTheRest)
     const double now = simulator.position(1).head<2>().norm();
     if (share < 1.0)
     {
-      EXPECT_NEAR(now, radius, 1e-6);
+      EXPECT_NEAR(now, radius, 5e-5);  // of the first step, which comes from a tangent
     }
     else
     {

@@ -265,7 +265,7 @@ TEST(GravityCompensationTest, ALimbOfAFloatingBodyHoldsWithoutDroop)
 {
   Scenario scene = groundScene(0.8);
   BodySpec& body = addBody(scene, "robot", "", poseAt(0.0, 0.0, 0.05));
-  body.urdf_path = std::string(PROJECT_DIR) + "/examples/first_robot.urdf";
+  body.urdf_path = std::string(PROJECT_DIR) + "/examples/first_robot/first_robot.urdf";
   body.joints = {{"hinge", {0.9, 0.0}}};
   body.hold_initial_position = true;
   body.gravity_compensation = true;

@@ -113,7 +113,7 @@ TEST_F(StateFileTest, WhatWasSetWhileItRanComesAlong)
       whole.setTimeStep(whole.scenario().time_step * share(random));
       whole.setGravity(whole.scenario().gravity * share(random));
       whole.setDefaultFriction(share(random));
-      whole.setFriction(whole.bodyName(0), "ground", share(random));
+      whole.setFriction(whole.bodyName(0), whole.bodyName(0), share(random));
       whole.setSolver("ac_newton");
       whole.setStopping(stopping);
       run(whole, 100);
