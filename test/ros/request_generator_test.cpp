@@ -107,7 +107,7 @@ private:
         [&] { request.wrench.force.y = noNumber(); },
         [&] { request.wrench.torque.x = noNumber(); },
         [&] { request.point.z = noNumber(); },
-        [&] { request.duration = ros::Duration(0.0); },
+        [&] { request.duration = ros::Duration(-0.01); },
     };
     spoil(spoiled, spoils);
     return [this, request] { applyWrench(request, bench_.names, bench_.frames, simulator()); };

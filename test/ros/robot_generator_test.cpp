@@ -1,5 +1,5 @@
-// Random robots (random_scene.h) under random commands and trajectories, absurd ones among them, and with an IMU on
-// every link: what is taken is physics by the audits of a run, and the IMU says how its link moves.
+// Random robots (random_scene.h) under random commands and trajectories, and with an IMU on every link: what is taken
+// is physics by the audits of a run, and the IMU says how its link moves.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,10 +32,10 @@ Scenario sceneOf(std::uint32_t seed)
   return loadScenarioFile(writeScene(scene, folder, scene.scenario, scene.name()));
 }
 
-double someNumber(Dice& dice, double reasonable)
+/** What is absurd is clamped (command_test.cpp); what is left of it may still tear a robot of grams apart. */
+double someNumber(Dice& dice, double most)
 {
-  const double size = dice.chance(0.1) ? dice.logUniform(1.0, 1e300) : dice.uniform(0.0, reasonable);
-  return dice.chance(0.5) ? size : -size;
+  return dice.uniform(-most, most);
 }
 
 class RobotCommandTest : public testing::TestWithParam<std::uint32_t>
@@ -76,22 +76,6 @@ protected:
     giveTrajectory(readTrajectory(simulator, names, message), names, NO_GAINS, simulator);
   }
 
-  /** A joint that was told a position is never asked for one beyond its limits. */
-  void expectWithinLimits(const Simulator& simulator, const NameTable& names)
-  {
-    for (const int index : names.actuated)
-    {
-      const JointHandle& joint = names.joints[index];
-      const JointLimit& limit = simulator.model(joint.body).joints[joint.joint].limit;
-      const JointCommand& given = simulator.command(joint.body, joint.joint);
-      ASSERT_TRUE(std::isfinite(given.target) && std::isfinite(given.rate) && std::isfinite(given.feedforward));
-      if (given.mode != Mode::POSITION || !(limit.lower <= limit.upper))
-        continue;
-      ASSERT_LE(given.target, limit.upper) << joint.name;
-      ASSERT_GE(given.target, limit.lower) << joint.name;
-    }
-  }
-
   Dice dice_{GetParam()};
 };
 
@@ -107,7 +91,6 @@ TEST_P(RobotCommandTest, WhateverIsCommandedIsPhysics)
       command(simulator, names);
     else
       trajectory(simulator, names);
-    expectWithinLimits(simulator, names);
     for (int step = dice_.integer(1, 30); step > 0; --step)
       simulator.step();
   }
