@@ -340,6 +340,7 @@ TEST(LoopTest, UnderContactItStaysClosedAndNothingGoesThrough)
   const size_t rocker = urdf.find("<link name='rocker'>");
   urdf.replace(urdf.find("</link>", rocker), 7, ball);
   Scenario scenario = groundScene(0.5);
+  scenario.stopping.tolerance = 1e-10;
   BodySpec& body = addBody(scenario, "linkage", urdf, poseAt(0.0, 0.0, 0.43));
   body.base = BaseType::FIXED;
   body.joints["drive"].position = -0.5;
