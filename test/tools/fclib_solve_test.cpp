@@ -198,7 +198,7 @@ TEST_F(FclibSolveTest, HistoryEndsWithTheReportedResidualWhateverTheMethod)
     const nlohmann::json answer = nlohmann::json::parse(result.output);
     const std::string text = textOf(history);
     EXPECT_EQ(text.rfind("iteration,seconds,residual\n", 0), 0u) << text;
-    ASSERT_GE(lines(text), 3) << text;
+    ASSERT_GE(lines(text), entry.name == std::string("enumerate") ? 2 : 3) << text;  // which has no iterates
     const std::string last = text.substr(text.rfind('\n', text.size() - 2) + 1);
     EXPECT_EQ(std::stod(last.substr(last.rfind(',') + 1)), answer["residual"].get<double>()) << last;
   }
