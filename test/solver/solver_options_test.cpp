@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/solver/registry.h"
