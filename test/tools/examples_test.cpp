@@ -50,7 +50,7 @@ TEST(EnumerateThesisTest, ARodThatIsPressedDownHasTwoSolutionsAboveTheFrictionOf
 {
   const CommandResult result = runTool("enumerate_thesis", "rod 6");
   ASSERT_EQ(result.code, 0) << result.errors;
-  const std::regex line(R"(1,1,([\d.]+),([\d.]+),1,(\d),0\n)");  // gravity and support, angle, friction, complete
+  const std::regex line(R"(\n1,1,([\d.]+),([\d.]+),1,(\d),0)");  // gravity and support, angle, friction, complete
   int lines = 0;
   for (std::sregex_iterator match(result.output.begin(), result.output.end(), line); match != std::sregex_iterator();
        ++match, ++lines)
