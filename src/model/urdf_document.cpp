@@ -5,6 +5,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "frictional_contact_sim/math/roll_pitch_yaw.h"
 #include "frictional_contact_sim/model/model_error.h"
 #include "urdf_schema.h"
 
@@ -281,11 +282,7 @@ Eigen::Vector3d vectorAttribute(const XMLElement& element, const char* name)
 
 Eigen::Isometry3d readOrigin(const XMLElement& element)
 {
-  const Eigen::Vector3d angles = vectorAttribute(element, "rpy");
-  return Eigen::Translation3d(vectorAttribute(element, "xyz")) *
-         Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
-         Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX());
+  return Eigen::Translation3d(vectorAttribute(element, "xyz")) * fromRollPitchYaw(vectorAttribute(element, "rpy"));
 }
 
 LoopElement readLoop(const XMLElement& element, const Names& links, const std::string& source)

@@ -5,6 +5,8 @@
 #include <map>
 #include <sstream>
 
+#include "frictional_contact_sim/math/roll_pitch_yaw.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -40,10 +42,7 @@ Eigen::Isometry3d origin(const Element* visual)
   if (const auto xyz = numbers<3>(element, "xyz"))
     pose.translation() = *xyz;
   if (const auto rpy = numbers<3>(element, "rpy"))
-    pose.linear() = (Eigen::AngleAxisd((*rpy)[2], Eigen::Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd((*rpy)[1], Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd((*rpy)[0], Eigen::Vector3d::UnitX()))
-                        .toRotationMatrix();
+    pose.linear() = fromRollPitchYaw(*rpy).toRotationMatrix();
   return pose;
 }
 

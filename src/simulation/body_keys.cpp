@@ -1,6 +1,7 @@
 // What a scenario says of one body, as a table of keys.
 #include <filesystem>
 
+#include "frictional_contact_sim/math/roll_pitch_yaw.h"
 #include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
 #include "sensor_keys.h"
@@ -40,10 +41,7 @@ Eigen::Isometry3d readPose(const ConfigNode& node)
     node.failExpecting("{xyz: [x, y, z], rpy: [roll, pitch, yaw]} or [x, y, z, roll, pitch, yaw]");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = xyz;
-  pose.linear() =
-      (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  pose.linear() = fromRollPitchYaw(rpy).toRotationMatrix();
   return pose;
 }
 
@@ -150,9 +148,7 @@ void readTable(const ConfigNode& node, BaseMotion& motion)
   if (node.has("rpy") && turns.size() != count)
     node.at("rpy").failExpecting(std::to_string(count) + " vectors, one a time");
   for (const Eigen::Vector3d& rpy : turns)
-    motion.turns.push_back(Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                           Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                           Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()));
+    motion.turns.push_back(fromRollPitchYaw(rpy));
 }
 
 void readMotion(const ConfigNode& node, BodySpec& body)

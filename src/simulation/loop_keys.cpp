@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "frictional_contact_sim/math/roll_pitch_yaw.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
 
 namespace frictional_contact_sim
@@ -38,9 +39,7 @@ LoopSide readSide(const ConfigNode& node, LoopType type, const std::string& body
   if (side.body.empty() != side.link.empty())
     node.fail(side.link.empty() ? "has no link, expected one of body '" + side.body + "'"
                                 : "has a link of the world, expected none");
-  side.placement = Eigen::Translation3d(xyz) * Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
+  side.placement = Eigen::Translation3d(xyz) * fromRollPitchYaw(rpy);
   if (type == LoopType::AXIS)
     side.placement.linear() = side.placement.linear() * orientationAlong(axis);
   return side;

@@ -197,7 +197,8 @@ void Simulator::Impl::checkSettings(const RunSettings& settings) const
     if (rule.restitution)
       require(between(0.0, 1.0), "restitution", *rule.restitution);
   }
-  pairsOf(changedMaterials(settings));
+  if (settings.default_friction || !settings.friction.empty())
+    pairsOf(changedMaterials(settings));
 }
 
 StoppingOptions Simulator::Impl::changedStopping(const RunSettings& settings) const
@@ -227,7 +228,8 @@ void Simulator::takeSettings(const RunSettings& settings)
     setSolver(*settings.solver);
   if (settings.tolerance || settings.max_iterations)
     setStopping(impl_->changedStopping(settings));
-  impl_->setMaterials(impl_->changedMaterials(settings));
+  if (settings.default_friction || !settings.friction.empty())
+    impl_->setMaterials(impl_->changedMaterials(settings));
   if (settings.default_friction)
     impl_->changed.default_friction = settings.default_friction;
 }

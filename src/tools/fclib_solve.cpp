@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "frictional_contact_sim/problem/certificate/conditioning.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/residual.h"
@@ -60,17 +61,10 @@ void warnOfAsymmetry(const std::string& file, const FclibProblem& problem)
 {
   if (problem.kind != FclibKind::LOCAL || problem.local.W.rows() == 0)
     return;
-  const SparseRows W = problem.local.W.toSparse();
-  const SparseRows mirror = W.transpose();
-  const SparseRows difference = W - mirror;
-  double largest = 0.0, asymmetry = 0.0;
-  for (Eigen::Index k = 0; k < W.nonZeros(); ++k)
-    largest = std::max(largest, std::abs(W.valuePtr()[k]));
-  for (Eigen::Index k = 0; k < difference.nonZeros(); ++k)
-    asymmetry = std::max(asymmetry, std::abs(difference.valuePtr()[k]));
-  if (asymmetry > SYMMETRIC * largest)
+  const double asymmetry = relativeAsymmetry(problem.local.W.toSparse());
+  if (asymmetry > SYMMETRIC)
     std::fprintf(stderr, "warning: %s: W is not symmetric, |W - W'| is %.2g of |W|; solved as it is\n", file.c_str(),
-                 asymmetry / largest);
+                 asymmetry);
 }
 
 Diagnostics diagnoseAnswer(const FclibProblem& problem, const SolverResult& result)

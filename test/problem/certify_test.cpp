@@ -38,20 +38,6 @@ Eigen::MatrixXd gauss(Eigen::Index rows, Eigen::Index columns, Random& random)
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](auto, auto) { return normal(random); });
 }
 
-/** M = I, f = 0: the verdict depends on neither. */
-IncrementalProblem kinematics(const Eigen::MatrixXd& H, const Eigen::VectorXd& w, const std::vector<Law>& laws)
-{
-  IncrementalProblem problem;
-  problem.M = sparse(Eigen::MatrixXd::Identity(H.cols(), H.cols()));
-  problem.f.setZero(H.cols());
-  problem.H = sparse(H);
-  problem.w = w;
-  problem.laws = laws;
-  problem.G.resize(0, H.cols());
-  problem.b.resize(0);
-  return problem;
-}
-
 /** Largest violation of H v + w in L*, G v + b = 0, in units of round-off of what goes into each row. */
 Long violation(const IncrementalProblem& problem, const Eigen::VectorXd& v)
 {

@@ -7,26 +7,13 @@
 #include "frictional_contact_sim/problem/delassus_reduction.h"
 #include "frictional_contact_sim/problem/random_family.h"
 #include "support/hand_problems.h"
+#include "support/thesis_problems.h"
 
 using namespace frictional_contact_sim;
 using namespace frictional_contact_sim::test_support;
 
 namespace
 {
-/** f = 0, M = I: the criterion looks at neither. */
-IncrementalProblem kinematics(const Eigen::MatrixXd& H, const Eigen::VectorXd& w, const std::vector<Law>& laws)
-{
-  IncrementalProblem problem;
-  problem.M = sparse(Eigen::MatrixXd::Identity(H.cols(), H.cols()));
-  problem.f.setZero(H.cols());
-  problem.H = sparse(H);
-  problem.w = w;
-  problem.laws = laws;
-  problem.G.resize(0, H.cols());
-  problem.b.resize(0);
-  return problem;
-}
-
 /** Painleve's rod, Cadoux (2009), (3.32): u_T = u_0 + v cos(theta), u_N = v sin(theta), mu; in 2D or embedded in 3D. */
 IncrementalProblem painleveRod(double theta, double mu, double u0, int dimension)
 {

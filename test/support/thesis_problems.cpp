@@ -25,6 +25,11 @@ IncrementalProblem denseProblem(const MatrixXd& M, const VectorXd& f, const Matr
   return problem;
 }
 
+IncrementalProblem kinematics(const MatrixXd& H, const VectorXd& w, const std::vector<Law>& laws)
+{
+  return denseProblem(MatrixXd::Identity(H.cols(), H.cols()), VectorXd::Zero(H.cols()), H, w, laws);
+}
+
 IncrementalProblem painleveRod(double angle, double friction, double gravity, double support_velocity)
 {
   const double sine = std::sin(angle), cosine = std::cos(angle);

@@ -14,6 +14,8 @@ namespace test_support
 /** @brief A problem from dense matrices, without bilateral rows. */
 IncrementalProblem denseProblem(const Eigen::MatrixXd& M, const Eigen::VectorXd& f, const Eigen::MatrixXd& H,
                                 const Eigen::VectorXd& w, const std::vector<Law>& laws);
+/** @brief The same with M = I, f = 0, on which existence does not depend. */
+IncrementalProblem kinematics(const Eigen::MatrixXd& H, const Eigen::VectorXd& w, const std::vector<Law>& laws);
 
 /**
  * @brief Painleve's rod (1.38) with the thesis's values nu = 2, l = 1, h = 2/3, v_0 = 0: one velocity, one planar

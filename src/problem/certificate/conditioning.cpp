@@ -96,6 +96,13 @@ Conditioning fromSpectrum(const Eigen::VectorXd& values, Eigen::Index rows, doub
     result.condition = std::pow(largest / smallest, power);
   return result;
 }
+double largestEntry(const SparseRows& matrix)
+{
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < matrix.nonZeros(); ++k)
+    largest = std::max(largest, std::abs(matrix.valuePtr()[k]));
+  return largest;
+}
 }  // namespace
 
 Conditioning conditioning(const IncrementalProblem& problem, int max_rows)
@@ -138,20 +145,20 @@ Conditioning conditioning(const DelassusProblem& problem, int max_rows)
   return fromSpectrum(spectrum.eigenvalues(), count, DBL_EPSILON * static_cast<double>(count), 1.0);
 }
 
+double relativeAsymmetry(const SparseRows& W)
+{
+  const double largest = largestEntry(W);
+  return largest > 0.0 ? largestEntry(W - SparseRows(W.transpose())) / largest : 0.0;
+}
+
 double delassusDefect(const SparseRows& W)
 {
-  const SparseRows mirror = W.transpose();
-  const SparseRows difference = W - mirror;
-  double largest = 0.0, asymmetry = 0.0;
-  for (Eigen::Index k = 0; k < W.nonZeros(); ++k)
-    largest = std::max(largest, std::abs(W.valuePtr()[k]));
-  for (Eigen::Index k = 0; k < difference.nonZeros(); ++k)
-    asymmetry = std::max(asymmetry, std::abs(difference.valuePtr()[k]));
+  const double largest = largestEntry(W);
   if (largest == 0.0)
     return 0.0;
-  asymmetry /= largest;
+  const double asymmetry = relativeAsymmetry(W);
   // Such a shift makes what is semi-definite, but for round-off, definite.
-  const Eigen::SparseMatrix<double> symmetric = 0.5 * (W + mirror);
+  const Eigen::SparseMatrix<double> symmetric = 0.5 * (W + SparseRows(W.transpose()));
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor;
   factor.setShift(static_cast<double>(W.rows()) * std::max(INDEFINITE, asymmetry) * largest);
   factor.compute(symmetric);

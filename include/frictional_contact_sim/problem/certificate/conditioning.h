@@ -30,6 +30,9 @@ struct Conditioning
 Conditioning conditioning(const IncrementalProblem& problem, int max_rows = 1500);
 Conditioning conditioning(const DelassusProblem& problem, int max_rows = 1500);
 
+/** @brief |W - W'| over |W|, largest entries; W compressed. */
+double relativeAsymmetry(const SparseRows& W);
+
 /**
  * @brief How far W is from H M^-1 H^T for some H and M, relative to its largest entry: the largest entry of W - W^T, or
  * infinite where the symmetric part has an eigenvalue below -rows max(1e-8, that).
