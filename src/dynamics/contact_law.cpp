@@ -7,6 +7,7 @@ namespace frictional_contact_sim
 NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, double restitution, double dt)
 {
   NormalShift result;
+  gap = law.gapToMend(gap);
   const bool approaching = old_velocity < -law.closing_speed;
   if (law.form == ContactLawForm::VELOCITY)
   {

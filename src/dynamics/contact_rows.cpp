@@ -191,7 +191,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const double old_normal = point.normal.dot(velocity);
   NormalShift shift;
   if (point.is_linearised && context.normal_law.recovery_speed > 0.0)
-    shift.shift = point.row_gap / context.dt;
+    shift.shift = context.normal_law.gapToMend(point.row_gap) / context.dt;
   else if (point.is_linearised)  // asks for no separation either
     shift.shift = std::max(point.row_gap, 0.0) / context.dt;
   else if (context.impact)

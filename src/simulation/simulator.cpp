@@ -143,6 +143,7 @@ const StepOutcome& Simulator::reset()
   state.rows = impl_->start.rows;
   state.energy = impl_->start.energy;
   state.energy_start = impl_->start.energy_start;
+  state.wedged = impl_->start.wedged;
   state.scenario_clock = StepClock{};
   impl_->joinWelded();
   impl_->updateEnds();

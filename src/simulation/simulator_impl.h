@@ -33,6 +33,7 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
+  double deepestOverlap() const;
   bool pushesOut() const;
   void askLess();
   void setUnsatisfied();
@@ -95,6 +96,7 @@ struct Simulator::Impl
   std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> good;
   Solution guess;
   SolverResult result;
+  double wedged_overlap = 0.0;  ///< could not be pushed out in this step [m]
   bool is_solved = false;  ///< assembly.problem() and result belong together
   StepOutcome outcome;
   StepSummary report;

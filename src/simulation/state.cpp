@@ -201,6 +201,8 @@ void visitState(StateArchive& archive, SimulationState& state)
       archive.number(memory.name, impulse);
   visit(archive, state.energy);
   archive.number("energy_start", state.energy_start);
+  archive.number("wedged.overlap", state.wedged.overlap);
+  archive.integer("wedged.until", state.wedged.until);
   if (!state.rows.loops.empty() || !archive.skipsEmptyNewLists())
     for (Closure& loop : archive.fixedList("loops", state.rows.loops))
       visitLoop(archive, loop);

@@ -12,6 +12,10 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double GAP_ROUND_OFF = 1e-14;  ///< a resting contact is no deeper [m]
+/// Overlaps that could not be pushed out are left for so many steps, where they are shallower than what touches: else
+/// every step of a heap that wedges some would ask in vain.
+constexpr std::uint64_t WEDGED_STEPS = 64;
+constexpr double WEDGED_MARGIN = 2.0;  ///< for what the solver's tolerance adds to them in these steps
 /// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
@@ -64,6 +68,8 @@ void Simulator::Impl::solveStep()
   int failed_rounds = 0;
   context.points = nullptr;
   context.normal_law.recovery_speed = NormalLaw().recovery_speed;
+  context.normal_law.left_overlap = state.step < state.wedged.until ? state.wedged.overlap : 0.0;
+  wedged_overlap = 0.0;
   do
   {
     if (again == Again::FROM_GUESS)
@@ -106,14 +112,20 @@ void Simulator::Impl::solveStep()
   solver.takeLeastNorm(assembly.problem(), result);
 }
 
+/** What rows are to push out at most [m] >= 0. */
+double Simulator::Impl::deepestOverlap() const
+{
+  double gap = 0.0;
+  for (const ContactPoint& point : *context.points)
+    gap = std::min(gap, point.is_linearised ? point.row_gap : point.gap);
+  return -gap;
+}
+
 /** Whether a row asks for a separation, not for round-off only. */
 bool Simulator::Impl::pushesOut() const
 {
   return context.normal_law.recovery_speed > 0.0 &&
-         std::any_of(
-             context.points->begin(), context.points->end(),
-             [](const ContactPoint& point)
-             { return (point.is_linearised ? point.row_gap : point.gap) < -GAP_ROUND_OFF; });
+         -context.normal_law.gapToMend(-deepestOverlap()) > GAP_ROUND_OFF;
 }
 
 /**
@@ -124,6 +136,7 @@ void Simulator::Impl::askLess()
 {
   if (pushesOut())
   {
+    wedged_overlap = deepestOverlap();
     context.normal_law.recovery_speed = 0.0;
     contact_set.beLenient();
   }
@@ -167,6 +180,8 @@ void Simulator::Impl::advance()
 
 void Simulator::Impl::take()
 {
+  if (WEDGED_MARGIN * wedged_overlap > GAP_ROUND_OFF && WEDGED_MARGIN * wedged_overlap <= CONTACT_GAP)
+    state.wedged = {WEDGED_MARGIN * wedged_overlap, state.step + WEDGED_STEPS};
   assembly.setMeanVelocity(result.solution);
   assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)

@@ -117,6 +117,7 @@ SimulationState carriedState(const SimulationState& from, SimulationState to, co
   to.scenario_clock = from.scenario_clock;
   to.energy = from.energy;
   to.energy_start = from.energy_start;
+  to.wedged = from.wedged;
   to.rows.contacts = carriedContacts(from.rows.contacts, new_shape);
   to.rows.welds = carriedWelds(from.rows.welds, new_body);
   carryLoops(from.rows.loops, new_body, to.rows.loops);

@@ -8,10 +8,13 @@
  *   closing with restitution e > 0 (u_old < -threshold and gap + dt u_old <= 0)   u_N >= -e u_old
  *   gap >= 0                                                                      u_N >= -gap/dt
  *   gap < 0                                                                       u_N >= min(-gap/dt, v_recover)
+ *   -left_overlap <= gap < 0                                                      u_N >= 0
  *
  * The gap at the next midpoint is gap + dt u_N to second order, hence >= 0 (docs/architecture.md). The thesis's
  * plain velocity law (Cadoux 2009, 1.1.5 and 2.2: u_N + e u_old >= 0 where gap <= 0, nothing else) stays selectable.
  */
+#include <algorithm>
+
 namespace frictional_contact_sim
 {
 enum class ContactLawForm
@@ -25,6 +28,10 @@ struct NormalLaw
   ContactLawForm form = ContactLawForm::GAP;
   double closing_speed = 1e-6;  ///< threshold: slower approaches do not bounce [m/s] > 0
   double recovery_speed = 0.01;  ///< v_recover: fastest separation of an initial penetration [m/s] >= 0
+  double left_overlap = 0.0;  ///< no separation is asked for up to this one [m] >= 0
+
+  /** @brief What is to be separated of a gap below zero, <= 0; other gaps as they are [m]. */
+  double gapToMend(double gap) const { return gap < 0.0 ? std::min(gap + left_overlap, 0.0) : gap; }
 };
 
 struct NormalShift

@@ -32,6 +32,13 @@ struct StepClock
   }
 };
 
+/** @brief Overlaps that could not be pushed out: wedged bodies. */
+struct WedgedOverlaps
+{
+  double overlap = 0.0;  ///< no deeper ones are left [m]
+  std::uint64_t until = 0;  ///< SimulationState::step from which on they are pushed out again
+};
+
 struct SimulationState
 {
   std::uint64_t step = 0;  ///< steps since the simulator was made; never reset
@@ -41,6 +48,7 @@ struct SimulationState
   std::vector<BodyState> bodies;
   RowState rows;
   EnergyLedger energy;
+  WedgedOverlaps wedged;
   double energy_start = 0.0;  ///< kinetic + potential when the ledger was started [J]
 
   double time() const { return clock.time(dt); }

@@ -1,0 +1,77 @@
+// Bodies wedged between others, overlapping by less than what touches: nothing can push them out, and a step does not
+// ask in vain every time.
+#include <gtest/gtest.h>
+
+#include "support/dice.h"
+#include "frictional_contact_sim/simulation/simulator.h"
+#include "scene.h"
+
+namespace frictional_contact_sim
+{
+namespace
+{
+constexpr int STEPS = 200;
+
+/** A block on the ground between two heavier ones that are held: no free motion separates both sides. */
+Scenario wedgedBlock(double overlap, double mass)
+{
+  Scenario scenario = groundScene(0.5);
+  addBody(scenario, "block", boxUrdf({0.1, 0.1, 0.1}, mass), poseAt(0.0, 0.0, 0.05));
+  for (const int side : {-1, 1})
+  {
+    BodySpec& wall = addBody(scenario, side < 0 ? "left" : "right", boxUrdf({0.1, 0.1, 0.1}, 1.0),
+                             poseAt(side * (0.1 - overlap), 0.0, 0.05));
+    wall.base = BaseType::FIXED;
+  }
+  return scenario;
+}
+
+TEST(WedgedTest, WhatCannotBePushedOutIsNotAskedForInEveryStep)
+{
+  test_support::Dice dice(4711);
+  for (int draw = 0; draw < 5; ++draw)
+  {
+    const double overlap = dice.logUniform(1e-12, 1e-10);
+    const double mass = dice.logUniform(0.01, 100.0);
+    Simulator simulator(wedgedBlock(overlap, mass));
+    int asking = 0;
+    for (int i = 0; i < STEPS; ++i)
+    {
+      const StepOutcome& outcome = simulator.step();
+      ASSERT_TRUE(outcome.converged()) << outcome.message;
+      asking += simulator.report().iterations > 10;
+      EXPECT_LE(simulator.report().max_penetration, 1.01 * overlap + 1e-14);
+      EXPECT_LT(simulator.velocity(0).norm(), 1e-8);
+    }
+    EXPECT_LE(asking, STEPS / 64 + 2) << overlap << " m, " << mass << " kg";
+  }
+}
+
+TEST(WedgedTest, AFreeBodyIsPushedOutAsBefore)
+{
+  Scenario scenario = groundScene(0.5);
+  addBody(scenario, "block", boxUrdf({0.1, 0.1, 0.1}, 1.0), poseAt(0.0, 0.0, 0.05 - 1e-10));
+  Simulator simulator(scenario);
+  ASSERT_TRUE(simulator.step().converged());
+  ASSERT_TRUE(simulator.step().converged());
+  EXPECT_LE(simulator.report().max_penetration, 1e-13);
+}
+
+TEST(WedgedTest, ALoadedStateGoesOnToTheBitWhileOverlapsAreLeft)
+{
+  const Scenario scenario = wedgedBlock(2e-11, 1.0);
+  Simulator first(scenario);
+  for (int i = 0; i < 10; ++i)
+    first.step();
+  Simulator second(scenario);
+  second.setState(first.state());
+  for (int i = 0; i < 2 * 64; ++i)
+  {
+    first.step();
+    second.step();
+    ASSERT_EQ(first.stateHash(), second.stateHash()) << i;
+    ASSERT_EQ(first.report().iterations, second.report().iterations) << i;
+  }
+}
+}  // namespace
+}  // namespace frictional_contact_sim
