@@ -195,5 +195,154 @@ TEST(DeltaRobotTest, PressesAsVirtualWorkSays)
   EXPECT_LT(simulator.report().max_penetration, 1e-9);
 }
 
+/** Slider-crank whose slider has clearance in its guide (Flores, Leine, Glocker 2010), motion in the x-z plane. */
+struct SliderCrank
+{
+  double crank = 0.153, rod = 0.306, half_length = 0.05, half_height = 0.025, clearance = 0.001;  // [m]
+  double masses[3] = {0.038, 0.038, 0.076};  // [kg]
+  double inertias[3] = {7.4e-5, 5.9e-4, 2.7e-6};  // about the centres of mass [kg m^2]
+};
+
+std::string planarLink(const std::string& name, double centre, double mass, double inertia, const std::string& shapes)
+{
+  const std::string moment = text(inertia);
+  return "<link name='" + name + "'><inertial><origin xyz='" + text(centre) + " 0 0'/><mass value='" + text(mass) +
+         "'/><inertia ixx='" + moment + "' ixy='0' ixz='0' iyy='" + moment + "' iyz='0' izz='" + moment +
+         "'/></inertial>" + shapes + "</link>";
+}
+
+std::string planarHinge(const std::string& name, const std::string& parent, const std::string& child, double x)
+{
+  return "<joint name='" + name + "' type='continuous'><parent link='" + parent + "'/><child link='" + child +
+         "'/><origin xyz='" + text(x) + " 0 0'/><axis xyz='0 -1 0'/></joint>";
+}
+
+Scenario sliderCrankScene(const SliderCrank& part, double h)
+{
+  const std::string corners = "<collision><geometry><box size='" + text(2.0 * part.half_length) + " 0.02 " +
+                              text(2.0 * part.half_height) + "'/></geometry></collision>";
+  const std::string urdf =
+      "<robot name='engine'><link name='frame'/>" +
+      planarLink("crank", 0.5 * part.crank, part.masses[0], part.inertias[0], "") +
+      planarLink("rod", 0.5 * part.rod, part.masses[1], part.inertias[1], "") +
+      planarLink("slider", 0.0, part.masses[2], part.inertias[2], corners) + planarHinge("one", "frame", "crank", 0.0) +
+      planarHinge("two", "crank", "rod", part.crank) + planarHinge("three", "rod", "slider", part.rod) + "</robot>";
+  Scenario scenario = groundScene(0.01, 0.4);
+  scenario.ground.reset();
+  scenario.time_step = h;
+  scenario.stopping.tolerance = 1e-10;
+  BodySpec& engine = addBody(scenario, "engine", urdf, poseAt(0.0, 0.0, 0.0));
+  engine.base = BaseType::FIXED;
+  engine.joints["one"].velocity = 150.0;
+  engine.joints["two"].velocity = -75.0 - 150.0;
+  engine.joints["three"].velocity = 75.0;
+  for (const double side : {-1.0, 1.0})
+    addBody(scenario, side < 0.0 ? "below" : "above", boxUrdf({1.0, 0.1, 0.02}, 1.0),
+            poseAt(part.rod, 0.0, side * (part.half_height + part.clearance + 0.01)))
+        .base = BaseType::FIXED;
+  return scenario;
+}
+
+struct SliderCrankRun
+{
+  double first_impact = 0.0;  ///< [s]
+  double crank_angle = 0.0;  ///< at 0.2 s [rad]
+  double energy_ratio = 0.0;  ///< kinetic, at 0.2 s over that at the start
+  double deepest = 0.0;  ///< [m]
+};
+
+SliderCrankRun runSliderCrank(double h)
+{
+  Simulator simulator(sliderCrankScene(SliderCrank(), h));
+  SliderCrankRun run;
+  const double start = simulator.report().energy.kinetic;
+  while (simulator.time() < 0.2 - 0.5 * h)
+  {
+    if (!simulator.step().converged())
+    {
+      ADD_FAILURE() << "at " << simulator.time() << " s: " << simulator.outcome().message;
+      break;
+    }
+    for (const ContactState& contact : simulator.contacts())
+      if (run.first_impact == 0.0 && contact.mode == ContactMode::IMPACT)
+        run.first_impact = simulator.time() - 0.5 * h;
+    run.deepest = std::max(run.deepest, simulator.report().max_penetration);
+  }
+  run.crank_angle = simulator.position(0)[0];
+  run.energy_ratio = simulator.report().energy.kinetic / start;
+  return run;
+}
+
+TEST(SliderCrankTest, HitsItsGuideAsInTheLiterature)
+{
+  const SliderCrankRun run = runSliderCrank(1e-5);
+  EXPECT_NEAR(run.first_impact, 0.002694, 1e-5);
+  EXPECT_NEAR(run.crank_angle, 18.0837, 1e-3 * 18.0837);
+  EXPECT_NEAR(run.energy_ratio, 0.9386, 1e-3);
+  EXPECT_LT(run.deepest, 1e-9);
+}
+
+/** A gripper of two fingers on rails, one the mirror of the other by <mimic>, driven with at most `most` newtons. */
+Scenario gripperScene(double most, double block)
+{
+  const auto finger = [](const std::string& name)
+  {
+    return "<link name='" + name +
+           "'><inertial><mass value='0.1'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0' izz='1e-4'/>"
+           "</inertial><collision><geometry><sphere radius='0.01'/></geometry></collision></link>";
+  };
+  const auto rail = [](const std::string& name, const std::string& child, double side, const std::string& mimic)
+  {
+    return "<joint name='" + name + "' type='prismatic'><parent link='world'/><child link='" + child +
+           "'/><origin xyz='" + text(side * 0.1) + " 0 0'/><axis xyz='" + text(-side) +
+           " 0 0'/><limit lower='0' upper='0.09' effort='1e3' velocity='10'/>" + mimic + "</joint>";
+  };
+  Scenario scenario = emptySpace();
+  scenario.stopping.tolerance = 1e-10;
+  BodySpec& hand = addBody(scenario, "hand",
+                           "<robot name='hand'><link name='world'/>" + finger("left") + finger("right") +
+                               rail("close", "left", -1.0, "") +
+                               rail("follow", "right", 1.0, "<mimic joint='close' multiplier='1'/>") + "</robot>",
+                           poseAt(0.0, 0.0, 0.5));
+  hand.base = BaseType::FIXED;
+  JointCommand command;
+  command.mode = JointCommand::Mode::POSITION;
+  command.target = 0.09;
+  command.kp = 5000.0;
+  command.kd = 50.0;
+  command.max_effort = most;
+  hand.commands["close"] = command;
+  addBody(scenario, "block", boxUrdf({block, 0.05, 0.05}, 0.5), poseAt(0.0, 0.0, 0.5));
+  return scenario;
+}
+
+TEST(MimicGripperTest, ClosesOnABlockStopsWithItsEffortAtTheLimitAndStaysFor1e5Steps)
+{
+  const double most = 30.0;
+  const double block = 0.04;
+  Simulator simulator(gripperScene(most, block));
+  double closure[2] = {0.0, 0.0};
+  double deepest = 0.0;
+  for (int step = 0; step < 100000; ++step)
+  {
+    ASSERT_TRUE(simulator.step().converged()) << step << " " << simulator.outcome().message;
+    const Eigen::VectorXd& q = simulator.position(0);
+    double& part = closure[step < 1000 ? 0 : 1];
+    part = std::max(part, std::abs(q[0] - q[1]));
+    deepest = std::max(deepest, simulator.report().max_penetration);
+  }
+  EXPECT_LT(closure[0], 2e-6);  // 2 h^2 v^2/L with v = 1 m/s, L = 1 m
+  EXPECT_LT(closure[1], 1e-12);  // at rest, and not growing
+  EXPECT_LT(deepest, 1e-9);
+  EXPECT_NEAR(simulator.effort(0, simulator.model(0).findJoint("close")), most, 1e-9 * most);
+  // Fingers at the block's faces: 0.1 - q - 0.01 = block/2. Each presses with half of the drive's force.
+  EXPECT_NEAR(simulator.position(0)[0], 0.09 - 0.5 * block, 1e-9);
+  double pressed = 0.0;
+  for (const ContactState& contact : simulator.contacts())
+    pressed += std::abs(contact.impulse.x()) / 1e-3;
+  EXPECT_NEAR(pressed, most, 1e-6 * most);  // two fingers, half of it each
+  EXPECT_LT(simulator.velocity(1).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim

@@ -245,6 +245,35 @@ TEST(LoopTest, MassRatiosOfAMillionStayClosed)
   }
 }
 
+TEST(LoopTest, AUrdfMayNameLinksAndOriginsOneAndTwoOrParentAndChild)
+{
+  const Scenario old_names = fourBarScene(FourBar(), "axis", 0.5);
+  Scenario scenario = old_names;
+  std::string& urdf = scenario.bodies[0].urdf_xml;
+  const size_t loop = urdf.find("<loop_joint");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"<parent", "<link1"}, {"<child ", "<link2 "}, {"<origin", "<origin1"}, {"<child_origin", "<origin2"}})
+    urdf.replace(urdf.find(from, loop), from.size(), to);
+  Simulator one(scenario);
+  Simulator other(old_names);
+  for (int step = 0; step < 20; ++step)
+  {
+    one.step();
+    other.step();
+  }
+  EXPECT_EQ(one.stateHash(), other.stateHash());
+  urdf.replace(urdf.find("<link2 link='coupler'/>"), 23, "");
+  try
+  {
+    Simulator none(scenario);
+    ADD_FAILURE() << "was taken";
+  }
+  catch (const std::exception& error)
+  {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("closure"), testing::HasSubstr("link2")));
+  }
+}
+
 TEST(LoopTest, ItsForcesHoldTheWeightOfWhatHangsOnThem)
 {
   // A beam of 2 m on two point supports: each carries half, and link forces close Newton's equations.
