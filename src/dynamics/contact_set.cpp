@@ -68,8 +68,7 @@ double ContactSet::sizeOf(const ContactPoint& point) const
   {
     const double radius = world_.convexShape(handle).bounding_radius;
     const ShapeInfo& shape = world_.shape(handle);
-    return radius > 0.0 || shape.body < 0 ? radius
-                                          : bodies_[static_cast<size_t>(shape.body)].model.sizes[shape.link];
+    return radius > 0.0 || shape.body < 0 ? radius : bodies_[static_cast<size_t>(shape.body)].model.sizes[shape.link];
   };
   return std::min(size(point.shape_a), size(point.shape_b));
 }

@@ -56,7 +56,8 @@ TEST(UnequalMassesTest, LeaveTheImpactAsNewtonsLawSays)
 
 TEST(NewtonCradleTest, TouchingBallsFollowTheSimultaneousLawForEveryRestitution)
 {
-  // One impact for all: u_1 = e, u_2 = 0 (its balls were at rest against each other): v = (1 - 2s, s, s), s = (1 + e)/3.
+  // One impact for all: u_1 = e, u_2 = 0 (its balls were at rest against each other): v = (1 - 2s, s, s), s = (1 +
+  // e)/3.
   for (const double e : {0.0, 0.25, 0.5, 0.9, 1.0})
   {
     Scenario scenario = spaceWith(0.0, e);
@@ -121,8 +122,7 @@ TEST(ChatterTest, RandomBodiesWithRestitutionEndAtRest)
     const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.2) + dice.vector(0.1);
     const Eigen::Vector3d axis = dice.vector(1.0).normalized();
     BodySpec& box = addBody(scenario, "box", boxUrdf(size, 1.0), poseAt(0.0, 0.0, 0.4));
-    box.pose->linear() =
-        Eigen::AngleAxisd(dice.uniform(0.0, 1.5), axis).toRotationMatrix();
+    box.pose->linear() = Eigen::AngleAxisd(dice.uniform(0.0, 1.5), axis).toRotationMatrix();
     AuditedSimulator simulator(scenario);
     for (int step = 0; step < 4000; ++step)
       ASSERT_TRUE(simulator.step().converged()) << "trial " << trial << " step " << step;
@@ -153,7 +153,8 @@ protected:
 
 TEST_F(BallImpactTest, TurnsItsSlipRoundWhereTheConeAllowsItElseSlides)
 {
-  // Of a ball W_TT = 7/(2 m): r_T = -(2/7) m (1 + e_T) u_T while |r_T| <= mu r_N, r_N = (1 + e) m |v_N|; beyond, Coulomb.
+  // Of a ball W_TT = 7/(2 m): r_T = -(2/7) m (1 + e_T) u_T while |r_T| <= mu r_N, r_N = (1 + e) m |v_N|; beyond,
+  // Coulomb.
   Dice dice(115);
   int turned = 0;
   int slid = 0;
@@ -174,8 +175,7 @@ TEST_F(BallImpactTest, TurnsItsSlipRoundWhereTheConeAllowsItElseSlides)
     const double tangential = std::min(wanted, mu * normal);
     (wanted < mu * normal ? turned : slid)++;
     const Eigen::Vector3d impulse = normal * Eigen::Vector3d::UnitZ() - tangential * slip.normalized();
-    const Eigen::Vector3d turn =
-        Eigen::Vector3d(0.0, 0.0, -RADIUS).cross(impulse) / (0.4 * MASS * RADIUS * RADIUS);
+    const Eigen::Vector3d turn = Eigen::Vector3d(0.0, 0.0, -RADIUS).cross(impulse) / (0.4 * MASS * RADIUS * RADIUS);
     const Eigen::VectorXd after = simulator.velocity(0);
     ASSERT_LT((after.head<3>() - velocity - impulse / MASS).norm(), 1e-10) << "trial " << trial;
     ASSERT_LT((after.tail<3>() - spin - turn).norm(), 1e-8) << "trial " << trial;
@@ -234,8 +234,9 @@ TEST_F(BallImpactTest, TheSmallerValueOfBothSidesCountsUnlessThePairHasItsOwn)
     }
     catch (const std::exception& error)
     {
-      EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("cell.yaml"),
-                                               testing::HasSubstr("tangential_restitution"), testing::HasSubstr(value)));
+      EXPECT_THAT(error.what(),
+                  testing::AllOf(testing::HasSubstr("cell.yaml"), testing::HasSubstr("tangential_restitution"),
+                                 testing::HasSubstr(value)));
     }
 }
 
@@ -263,8 +264,8 @@ std::pair<double, double> bounce(ContactLawForm law, double e, double h)
 
 TEST(VelocityLawTest, BouncesAsHighAsTheGapLawButSeesTheGroundAStepLate)
 {
-  // The plain law acts once the midpoint is inside: v h deep at most, and stays so deep with e = 0. The gap law is never
-  // inside. Both heights are of order one.
+  // The plain law acts once the midpoint is inside: v h deep at most, and stays so deep with e = 0. The gap law is
+  // never inside. Both heights are of order one.
   const double speed = std::sqrt(2.0 * GRAVITY * 0.5);
   for (const double h : {1e-3, 2.5e-4})
     for (const double e : {0.0, 0.7})
@@ -281,8 +282,8 @@ TEST(VelocityLawTest, BouncesAsHighAsTheGapLawButSeesTheGroundAStepLate)
 
 TEST(VelocityLawTest, SlidesAndSticksAsTheGapLawOnceItTouches)
 {
-  // A block that starts on the incline. Round-off lifts it off by 1e-17 m at times: the gap law does not care, the plain
-  // one lets it fall for a step, so that its speed is that of the formula to g h only.
+  // A block that starts on the incline. Round-off lifts it off by 1e-17 m at times: the gap law does not care, the
+  // plain one lets it fall for a step, so that its speed is that of the formula to g h only.
   for (const double angle : {0.2, 0.6})
   {
     double speed[2];

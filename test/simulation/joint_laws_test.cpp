@@ -55,8 +55,8 @@ TEST(JointDryFrictionTest, AWheelWithDampingStopsWhenTheFormulaSaysAndStays)
       simulator.step();
       if (simulator.velocity(0)[0] != 0.0)
         stopped = simulator.time();
-      const double exact = std::max(0.0, (start + friction / damping) * std::exp(-damping / inertia * simulator.time()) -
-                                             friction / damping);
+      const double exact = std::max(
+          0.0, (start + friction / damping) * std::exp(-damping / inertia * simulator.time()) - friction / damping);
       ASSERT_NEAR(simulator.velocity(0)[0], exact, 20.0 * scenario.time_step);  // first order: damping at the end
     }
     error[halves] = std::abs(stopped - expected);

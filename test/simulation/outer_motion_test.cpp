@@ -1,5 +1,5 @@
-// Figure 3.4 of Cadoux 2009: where all that surrounds the loose bodies moves as one rigid thing, that motion proves that
-// every step has a solution (silo, vibrating plate, washing drum).
+// Figure 3.4 of Cadoux 2009: where all that surrounds the loose bodies moves as one rigid thing, that motion proves
+// that every step has a solution (silo, vibrating plate, washing drum).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,9 @@ TEST_P(OuterMotionTest, ProvesThatEveryStepHasASolution)
     if (problem.rows() == 0)
       continue;
     most = std::max(most, static_cast<int>(simulator.contacts().size()));
-    // Against what surrounds them the bodies then rest: u = H v + w is the shift of the normal law and nothing else. The
-    // drum's points end a step on its circle, on chords: dt omega^2 r/2 = 1.5e-3 m/s is missing from a rigid motion.
+    // Against what surrounds them the bodies then rest: u = H v + w is the shift of the normal law and nothing else.
+    // The drum's points end a step on its circle, on chords: dt omega^2 r/2 = 1.5e-3 m/s is missing from a rigid
+    // motion.
     const Eigen::VectorXd u = problem.H * outerMotion(simulator) + problem.w;
     const bool turns = std::string(GetParam()) == "washing_drum";
     int row = 0;

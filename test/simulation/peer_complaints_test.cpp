@@ -70,7 +70,8 @@ TEST(PeerComplaintTest, MotorsThatPressTwoCapsulesTogetherPutInNoMoreThanTheirWo
   }
 }
 
-/** RobotLocomotion/drake#18241: a box thrown at a box, without gravity, gained energy at 0.5 ms and exploded at 1 ms. */
+/** RobotLocomotion/drake#18241: a box thrown at a box, without gravity, gained energy at 0.5 ms and exploded at 1 ms.
+ */
 TEST(PeerComplaintTest, ABoxThrownAtABoxLosesEnergyAndNoMomentum)
 {
   Dice dice(18241);
@@ -100,8 +101,7 @@ TEST(PeerComplaintTest, ABoxThrownAtABoxLosesEnergyAndNoMomentum)
         const Eigen::Vector3d size = body == 0 ? Eigen::Vector3d(0.2, 0.3, 0.25) : Eigen::Vector3d(0.1, 0.2, 0.15);
         const Eigen::Vector3d squares = size.cwiseAbs2();
         const Eigen::Vector3d moments =
-            m / 12.0 *
-            Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
+            m / 12.0 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
         const Eigen::Vector3d place = simulator.data(body).link_pose[0].translation();
         sum.head<3>() += m * velocity;
         sum.tail<3>() += m * place.cross(velocity) + turned * moments.cwiseProduct(turned.transpose() * spin);

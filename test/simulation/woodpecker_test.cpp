@@ -16,8 +16,8 @@ namespace
 {
 /**
  * Glocker 1995, Leine, van Campen and Glocker 2003: sleeve M on a pole, woodpecker S on a spiral spring, small angles.
- * q = (y, phi_M, phi_S); contacts: beak with pole, lower and upper edge of the sleeve. The mass matrix is constant, gaps
- * are linear: time-stepping with Moreau's rule is this loop and one incremental problem a step.
+ * q = (y, phi_M, phi_S); contacts: beak with pole, lower and upper edge of the sleeve. The mass matrix is constant,
+ * gaps are linear: time-stepping with Moreau's rule is this loop and one incremental problem a step.
  */
 struct Woodpecker
 {
