@@ -187,8 +187,30 @@ LawScale StepAssembly::scaleOf(const SparseRows& rows, int row, const RowUnit& u
   return scale;
 }
 
+/** Bodies that loops join are driven by each other: what one step's forces change of one, they change of all. */
+void StepAssembly::shareSpeedChanges()
+{
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (int row = 0; row < problem_.bilaterals(); ++row)
+    {
+      double largest = 0.0;
+      for (SparseRows::InnerIterator entry(problem_.G, row); entry; ++entry)
+        largest = std::max(largest, bodies_[body_of_[entry.col()]].speed_change);
+      for (SparseRows::InnerIterator entry(problem_.G, row); entry; ++entry)
+        if (double& own = bodies_[body_of_[entry.col()]].speed_change; own < largest)
+        {
+          own = largest;
+          changed = true;
+        }
+    }
+  }
+}
+
 void StepAssembly::setScales()
 {
+  shareSpeedChanges();
   problem_.scales.clear();
   int row = 0;
   for (size_t i = 0; i < problem_.laws.size(); ++i)

@@ -4,7 +4,16 @@
 
 namespace frictional_contact_sim
 {
-NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, double restitution, double dt)
+namespace
+{
+bool bounces(const Restitution& restitution)
+{
+  return restitution.normal > 0.0 || restitution.tangential > 0.0;
+}
+}  // namespace
+
+NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, const Restitution& restitution,
+                        double dt)
 {
   NormalShift result;
   gap = law.gapToMend(gap);
@@ -13,24 +22,29 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, d
   {
     result.active = gap <= 0.0;
     result.closing = result.active && approaching;
-    result.shift = result.closing ? restitution * old_velocity : 0.0;
+    result.shift = result.closing ? restitution.normal * old_velocity : 0.0;
+    result.tangential = result.closing ? restitution.tangential : 0.0;
     return result;
   }
   result.closing = approaching && gap + dt * old_velocity <= 0.0;
-  if (result.closing && restitution > 0.0)
-    result.shift = restitution * old_velocity;
+  if (result.closing && bounces(restitution))
+  {
+    result.shift = restitution.normal * old_velocity;
+    result.tangential = restitution.tangential;
+  }
   else
     result.shift = gap >= 0.0 ? gap / dt : -std::min(-gap / dt, law.recovery_speed);
   return result;
 }
 
-NormalShift impactShift(double gap, double old_velocity, double restitution, double dt)
+NormalShift impactShift(double gap, double old_velocity, const Restitution& restitution, double dt)
 {
   NormalShift result;
   result.active = gap <= CONTACT_GAP || gap + 0.5 * dt * old_velocity < 0.0;
   result.closing = result.active && old_velocity < 0.0;
-  if (restitution > 0.0 || gap <= CONTACT_GAP)
-    result.shift = restitution * std::min(old_velocity, 0.0);
+  result.tangential = result.closing ? restitution.tangential : 0.0;
+  if (bounces(restitution) || gap <= CONTACT_GAP)
+    result.shift = restitution.normal * std::min(old_velocity, 0.0);
   else
     result.shift = 2.0 * gap / dt;
   return result;

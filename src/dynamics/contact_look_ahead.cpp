@@ -115,7 +115,7 @@ bool ContactSet::mend(const StepContext& context, double share)
       candidate = &insert({overlap.point});
     candidate->round = rounds_ + 1;
     mended = true;
-    if (candidate->use == Use::DROPPED && pairs_(overlap.point.shape_a, overlap.point.shape_b).restitution > 0.0)
+    if (candidate->use == Use::DROPPED && pairs_(overlap.point.shape_a, overlap.point.shape_b).bounces())
     {
       candidate->use = Use::ROW;
       candidate->is_kept = true;

@@ -189,21 +189,24 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
 
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
+  const Restitution restitution{material.restitution, material.tangential_restitution};
   NormalShift shift;
   if (point.is_linearised && context.normal_law.recovery_speed > 0.0)
     shift.shift = context.normal_law.gapToMend(point.row_gap) / context.dt;
   else if (point.is_linearised)  // asks for no separation either
     shift.shift = std::max(point.row_gap, 0.0) / context.dt;
   else if (context.impact)
-    shift = impactShift(point.gap, old_normal, material.restitution, context.dt);
+    shift = impactShift(point.gap, old_normal, restitution, context.dt);
   else
-    shift = normalShift(context.normal_law, point.gap, old_normal, material.restitution, context.dt);
+    shift = normalShift(context.normal_law, point.gap, old_normal, restitution, context.dt);
   if (!shift.active || !movesAlong(point.normal))
     return;
   contact.friction = material.friction;
   contact.restitution = material.restitution;
   contact.shift = shift.shift;
   contact.closing = shift.closing;
+  contact.tangential_shift =
+      shift.tangential * Eigen::Vector2d(contact.tangent_1.dot(velocity), contact.tangent_2.dot(velocity));
   contact.count = contact.friction > 0.0 ? 3 : 1;
   if (contact.closing)
     sink.noteClosing();
@@ -229,9 +232,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
     if (d == 1 && contact.creep.compliance > 0.0)
       sink.push(sink.addAuxiliary(1.0 / contact.creep.compliance), 1.0);  // u_d + k r_d: a velocity of mass 1/k
     const double base = axes[d]->dot(relative_base);
-    sink.endRow(base + (d == 0   ? shift.shift
-                        : d == 1 ? contact.creep.offset
-                                 : 0.0),
+    sink.endRow(base + (d == 0 ? shift.shift : contact.tangential_shift[d - 1] + (d == 1 ? contact.creep.offset : 0.0)),
                 {d == 0 ? WorkAccount::IMPACT : WorkAccount::FRICTION, base, nullptr});
   }
   if (contact.count == 3)
@@ -341,6 +342,8 @@ void ContactRows::accept(const StepContext& context, const StepAnswer& answer)
     const Eigen::Vector3d r = impulseOf(row, answer.solution);
     Eigen::Vector3d u = velocityOf(row, point, answer.solution);
     u[0] -= row.shift;
+    if (row.count == 3)
+      u.tail<2>() -= row.tangential_shift;
     if (row.creep.compliance > 0.0)
       u[1] -= row.creep.compliance * r[1] + row.creep.offset;
     ContactState state;

@@ -63,7 +63,14 @@ double ContactSet::tolerance() const
 
 double ContactSet::sizeOf(const ContactPoint& point) const
 {
-  return std::min(world_.convexShape(point.shape_a).bounding_radius, world_.convexShape(point.shape_b).bounding_radius);
+  // A sphere of no radius is a point: what counts then is the link that it is a corner of.
+  const auto size = [this](int handle)
+  {
+    const double radius = world_.convexShape(handle).bounding_radius;
+    const ShapeInfo& shape = world_.shape(handle);
+    return radius > 0.0 || shape.body < 0 ? radius : bodies_[static_cast<size_t>(shape.body)].model.sizes[shape.link];
+  };
+  return std::min(size(point.shape_a), size(point.shape_b));
 }
 
 /** Of the points of a prescribed base [m/s]. */

@@ -66,8 +66,8 @@ void LimitRows::addJointRows(const StepContext& context, int body_index, int joi
     side.has_row = side.needed || *memory != 0.0 || gap_now <= std::max(CONTACT_GAP, closes);
     if (!side.has_row)
       continue;
-    const NormalShift shift = context.impact ? impactShift(gap_now, velocity, 0.0, context.dt)
-                                             : normalShift(context.normal_law, gap_now, velocity, 0.0, context.dt);
+    const NormalShift shift = context.impact ? impactShift(gap_now, velocity, {}, context.dt)
+                                             : normalShift(context.normal_law, gap_now, velocity, {}, context.dt);
     side.has_row = shift.active;
     if (!side.has_row)
       continue;

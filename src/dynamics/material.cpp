@@ -32,7 +32,8 @@ Material givenMaterial(const MaterialTable& table, const SurfaceSide& a, const S
   const Material& material_b = table.find(b.material);
   return {std::min(a.friction < 0.0 ? material_a.friction : a.friction,
                    b.friction < 0.0 ? material_b.friction : b.friction),
-          std::min(material_a.restitution, material_b.restitution)};
+          std::min(material_a.restitution, material_b.restitution), nullptr,
+          std::min(material_a.tangential_restitution, material_b.tangential_restitution)};
 }
 }  // namespace
 

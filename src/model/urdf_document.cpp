@@ -285,6 +285,13 @@ Eigen::Isometry3d readOrigin(const XMLElement& element)
   return Eigen::Translation3d(vectorAttribute(element, "xyz")) * fromRollPitchYaw(vectorAttribute(element, "rpy"));
 }
 
+/** The child of a loop_joint by its name or, as in a <joint>, by the other one; nullptr where there is neither. */
+const XMLElement* eitherOf(const XMLElement& element, const char* name, const char* other)
+{
+  const XMLElement* child = element.FirstChildElement(name);
+  return child != nullptr ? child : element.FirstChildElement(other);
+}
+
 LoopElement readLoop(const XMLElement& element, const Names& links, const std::string& source)
 {
   LoopElement loop;
@@ -301,14 +308,19 @@ LoopElement readLoop(const XMLElement& element, const Names& links, const std::s
     }
   if (!is_known)
     failAt(source, loop.line, label + ": type = '" + type + "', expected point, axis or weld");
-  loop.parent = element.FirstChildElement("parent")->Attribute("link");
-  loop.child = element.FirstChildElement("child")->Attribute("link");
+  const XMLElement* parent = eitherOf(element, "link1", "parent");
+  const XMLElement* child = eitherOf(element, "link2", "child");
+  if (parent == nullptr || child == nullptr)
+    failAt(source, loop.line,
+           label + ": no <" + (parent == nullptr ? "link1" : "link2") + ">, expected both links: <link1 link='...'/>");
+  loop.parent = parent->Attribute("link");
+  loop.child = child->Attribute("link");
   for (const std::string& link : {loop.parent, loop.child})
     if (links.count(link) == 0)
       failAt(source, loop.line, label + ": there is no link '" + link + "'");
-  if (const XMLElement* origin = element.FirstChildElement("origin"))
+  if (const XMLElement* origin = eitherOf(element, "origin1", "origin"))
     loop.origin = readOrigin(*origin);
-  if (const XMLElement* origin = element.FirstChildElement("child_origin"))
+  if (const XMLElement* origin = eitherOf(element, "origin2", "child_origin"))
     loop.child_origin = readOrigin(*origin);
   const XMLElement* axis = element.FirstChildElement("axis");
   if (axis != nullptr && loop.type != LoopType::AXIS)

@@ -17,7 +17,8 @@ enum class PairLaw
 
 ConfigKeys surfaceKeys(Material& material)
 {
-  return {frictionKey("friction", material.friction), restitutionKey("restitution", material.restitution)};
+  return {frictionKey("friction", material.friction), restitutionKey("restitution", material.restitution),
+          restitutionKey("tangential_restitution", material.tangential_restitution)};
 }
 
 /** A misspelt friction is another simulation: refused, whatever the document does with unknown keys. */

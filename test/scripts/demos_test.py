@@ -87,7 +87,7 @@ class DemosTest(unittest.TestCase):
 
     def test_every_demo_has_its_page_and_picture(self):
         page = (ROOT / 'docs/demos.md').read_text()
-        self.assertEqual(8, len(launch_files()))
+        self.assertEqual(11, len(launch_files()))
         for launch_file in launch_files():
             self.assertIn(f'{launch_file.stem}.launch', page)
             self.assertIn(f'images/demo_{launch_file.stem}.png', page)
@@ -194,6 +194,33 @@ class DemosTest(unittest.TestCase):
         run = self.run_text(text_of('grasp'), 1.5)
         self.assertLess(run.way('cube', 0.5), 1e-9)
         self.assertAlmostEqual(1.0 * GRAVITY, run.result['contact_force']['cube'][2], delta=1e-7)
+
+    def test_the_belt_slips_under_what_the_stop_holds(self):
+        document = yaml.safe_load(text_of('conveyor'))
+        friction = self.dice.uniform(0.15, 0.35)
+        document['materials']['default']['friction'] = friction
+        run = self.run_text(yaml.safe_dump(document), 4.5)
+        for k in (1, 2, 3):
+            self.assertLess(run.speed(f'parcel_{k}', 4.4), 1e-6)
+        force = run.result['contact_force']
+        self.assertAlmostEqual(friction * force['belt'][2], force['belt'][0], delta=1e-6)  # on the belt: down, backwards
+        self.assertAlmostEqual(-force['belt'][0], force['stop'][0], delta=1e-6)
+        self.assertAlmostEqual(-3 * GRAVITY, force['belt'][2] + force['stop'][2], delta=1e-6)
+
+    def test_the_drum_carries_up_what_falls(self):
+        run = self.run_text(text_of('washing_drum'), 1.5)
+        self.assertEqual(0, run.result['failed_steps'])
+        highest = max(state['z'] for name, states in run.states.items() if name != 'drum' for state in states if state['time'] > 0.7)
+        self.assertGreater(highest, 0.45)  # 0.25 above the drum's floor
+        self.assertGreater(run.result['energy']['actuators'], 5.0)  # the motion puts in what friction and impacts take
+        for name, states in run.states.items():
+            for state in states:
+                self.assertLess(math.hypot(state['x'], state['z'] - 0.5), 0.33)  # none leaves the drum
+
+    def test_the_four_bar_stays_closed_while_it_hammers(self):
+        run = self.run_text(text_of('four_bar'), 1.5)
+        self.assertLess(run.result['max_bilateral_violation'], 1e-9)
+        self.assertTrue(any(float(row['fz']) != 0.0 for row in run.read('contacts.csv')))
 
     def test_the_wheel_creeps_as_its_curve_says(self):
         run = self.run_text(text_of('rolling_wheel'), 1.0)

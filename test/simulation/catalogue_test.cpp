@@ -89,8 +89,9 @@ TEST(RollingTest, CylinderOnInclineRollsWithTwoThirdsOfTheSlope)
 std::string rodUrdf(double end_radius)
 {
   std::ostringstream text;
+  text.precision(17);
   text << "<robot name='rod'><link name='rod'><inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='"
-       << 0.08333333333333333 << "' iyz='0' izz='0.08333333333333333'/></inertial><collision><origin xyz='0.5 0 0'/>"
+       << 1.0 / 12.0 << "' iyz='0' izz='0.08333333333333333'/></inertial><collision><origin xyz='0.5 0 0'/>"
        << "<geometry><sphere radius='" << end_radius << "'/></geometry></collision></link></robot>";
   return text.str();
 }
@@ -109,8 +110,7 @@ TEST(RodImpactTest, ImpulseIsThatOfTheEffectiveMass)
     rod.linear_velocity.z() = -v0;
     const AuditedSimulator simulator(scene);
     const double expected = (1.0 + e) * v0 / (1.0 + 3.0 * std::cos(angle) * std::cos(angle));
-    // The contact lies 1e-9 m below the rod's axis; the inertia is given with six digits.
-    EXPECT_NEAR(simulator.velocity(0)[2] + v0, expected, 1e-5) << angle / DEGREE;
+    EXPECT_NEAR(simulator.velocity(0)[2] + v0, expected, 1e-10) << angle / DEGREE;
   }
 }
 

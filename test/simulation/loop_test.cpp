@@ -10,6 +10,7 @@
 #include "frictional_contact_sim/simulation/link_forces.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
+#include "linkage.h"
 #include "scene.h"
 #include "support/audited_simulator.h"
 #include "support/dice.h"
@@ -22,77 +23,12 @@ using test_support::AuditedSimulator;
 using test_support::Dice;
 using test_support::text;
 
-/** A rod of some length along x from its joint, no shapes. */
-std::string rodLink(const std::string& name, double length, double mass)
-{
-  const std::string across = text(mass * length * length / 12.0 + 1e-6 * mass);
-  return "<link name='" + name + "'><inertial><origin xyz='" + text(0.5 * length) + " 0 0'/><mass value='" +
-         text(mass) + "'/><inertia ixx='" + text(1e-4 * mass) + "' ixy='0' ixz='0' iyy='" + across + "' iyz='0' izz='" +
-         across + "'/></inertial></link>";
-}
-
-std::string hinge(const std::string& name, const std::string& parent, const std::string& child, double x)
-{
-  return "<joint name='" + name + "' type='continuous'><parent link='" + parent + "'/><child link='" + child +
-         "'/><origin xyz='" + text(x) + " 0 0'/><axis xyz='0 1 0'/></joint>";
-}
-
-struct FourBar
-{
-  double ground = 0.5, crank = 0.2, coupler = 0.45, rocker = 0.35;  // Grashof: the crank turns [m]
-  double mass = 1.0;  // of the crank; the others are in proportion to their lengths [kg]
-};
-
-/** crank - coupler as one chain, rocker as another, closed where coupler and rocker meet. */
-std::string fourBarUrdf(const FourBar& bar, const std::string& loop)
-{
-  const double density = bar.mass / bar.crank;
-  return "<robot name='four_bar'><link name='frame'/>" + rodLink("crank", bar.crank, bar.mass) +
-         rodLink("coupler", bar.coupler, density * bar.coupler) + rodLink("rocker", bar.rocker, density * bar.rocker) +
-         hinge("drive", "frame", "crank", 0.0) + hinge("knee", "crank", "coupler", bar.crank) +
-         hinge("pivot", "frame", "rocker", bar.ground) + loop + "</robot>";
-}
-
-std::string loopElement(const FourBar& bar, const std::string& type)
-{
-  return "<loop_joint name='closure' type='" + type + "'><parent link='rocker'/><child link='coupler'/><origin xyz='" +
-         text(bar.rocker) + " 0 0'/><child_origin xyz='" + text(bar.coupler) + " 0 0'/>" +
-         (type == "axis" ? "<axis xyz='0 1 0'/>" : "") + "</loop_joint>";
-}
-
-Scenario fourBarScene(const FourBar& bar, const std::string& type, double crank_angle)
-{
-  Scenario scenario = groundScene(0.5);
-  scenario.ground.reset();
-  BodySpec& body = addBody(scenario, "linkage", fourBarUrdf(bar, loopElement(bar, type)), poseAt(0.0, 0.0, 1.0));
-  body.base = BaseType::FIXED;
-  body.joints["drive"].position = crank_angle;
-  return scenario;
-}
-
 Eigen::Isometry3d placement(const Eigen::Vector3d& position, const Eigen::Vector3d& axis)
 {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = position;
   pose.linear() = orientationAlong(axis);
   return pose;
-}
-
-/** Where the two sides of a loop are apart [m]. */
-double openness(const Simulator& simulator, const Closure& loop)
-{
-  const auto place = [&](int body, int frame, const Eigen::Isometry3d& local)
-  {
-    return Eigen::Vector3d(body < 0
-                               ? local.translation()
-                               : framePose(simulator.model(body), simulator.data(body), frame) * local.translation());
-  };
-  return (place(loop.body_a, loop.frame_a, loop.anchor) - place(loop.body_b, loop.frame_b, loop.pose)).norm();
-}
-
-double energyOf(const Simulator& simulator)
-{
-  return simulator.report().energy.kinetic + simulator.report().energy.potential;
 }
 
 TEST(LoopTest, AFourBarKeepsClosureAndEnergyForManyTurns)
@@ -306,6 +242,35 @@ TEST(LoopTest, MassRatiosOfAMillionStayClosed)
       ASSERT_TRUE(simulator.step().converged()) << ratio << " step " << step << " " << simulator.outcome().message;
       ASSERT_LT(simulator.report().bilateral_violation, 1e-8) << ratio << " step " << step;
     }
+  }
+}
+
+TEST(LoopTest, AUrdfMayNameLinksAndOriginsOneAndTwoOrParentAndChild)
+{
+  const Scenario old_names = fourBarScene(FourBar(), "axis", 0.5);
+  Scenario scenario = old_names;
+  std::string& urdf = scenario.bodies[0].urdf_xml;
+  const size_t loop = urdf.find("<loop_joint");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"<parent", "<link1"}, {"<child ", "<link2 "}, {"<origin", "<origin1"}, {"<child_origin", "<origin2"}})
+    urdf.replace(urdf.find(from, loop), from.size(), to);
+  Simulator one(scenario);
+  Simulator other(old_names);
+  for (int step = 0; step < 20; ++step)
+  {
+    one.step();
+    other.step();
+  }
+  EXPECT_EQ(one.stateHash(), other.stateHash());
+  urdf.replace(urdf.find("<link2 link='coupler'/>"), 23, "");
+  try
+  {
+    Simulator none(scenario);
+    ADD_FAILURE() << "was taken";
+  }
+  catch (const std::exception& error)
+  {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("closure"), testing::HasSubstr("link2")));
   }
 }
 

@@ -81,6 +81,50 @@ TEST(MotionTest, AShakenPlateCarriesItsBoxUntilItFallsFasterThanTheBox)
   }
 }
 
+TEST(MotionTest, ARobotWeldedToAShakenPlateSwingsAsItsResonanceSays)
+{
+  // A base with joints has no motion of its own; a loop welds it to what moves. Mass on a spring, x_plate = a sin(w t):
+  // against the plate q = a r^2/(1 - r^2) sin(w t), r = w/w_0, where it starts so.
+  const double amplitude = 0.01, omega = 12.0, own = 20.0;
+  const double ratio = omega / own;
+  const double swing = amplitude * ratio * ratio / (1.0 - ratio * ratio);
+  double error[2];
+  for (const int halves : {0, 1})
+  {
+    Scenario scenario = emptySpace();
+    scenario.time_step = 0.002 / (1 << halves);
+    scenario.stopping.tolerance = 1e-11;
+    BodySpec& plate = addBody(scenario, "plate", boxUrdf({1.0, 1.0, 0.1}, 50.0), poseAt(0.0, 0.0, 0.0));
+    plate.base = BaseType::FIXED;
+    plate.motion = sine(Eigen::Vector3d::UnitX(), amplitude, omega / (2.0 * M_PI));
+    const std::string inertial =
+        "<inertial><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>";
+    BodySpec& robot =
+        addBody(scenario, "robot",
+                "<robot name='robot'><link name='foot'>" + inertial + "</link><link name='carriage'>" + inertial +
+                    "</link><joint name='rail' type='prismatic'><parent link='foot'/><child "
+                    "link='carriage'/><axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='10' "
+                    "velocity='10'/></joint></robot>",
+                poseAt(0.0, 0.0, 0.3));
+    robot.linear_velocity.x() = amplitude * omega;
+    robot.joints["rail"].velocity = swing * omega;
+    robot.springs["rail"] = {2.0 * own * own, 0.0, 0.0};
+    LoopSpec weld{"bolts", LoopType::WELD, {"robot", "foot"}, {"plate", "body"}, ""};
+    weld.b.placement.translation() = Eigen::Vector3d(0.0, 0.0, 0.3);
+    scenario.loops = {weld};
+    Simulator simulator(scenario);
+    error[halves] = 0.0;
+    while (simulator.time() < 1.0)
+    {
+      ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
+      const double q = simulator.position(1)[simulator.model(1).joints[1].q_index];
+      error[halves] = std::max(error[halves], std::abs(q - swing * std::sin(omega * simulator.time())));
+    }
+  }
+  EXPECT_LT(error[0], 0.01 * swing);
+  EXPECT_LT(error[1], 0.3 * error[0]);  // order 2
+}
+
 TEST(MotionTest, ATableIsFollowedToTheBitAtItsTimesAndStandsStillOutside)
 {
   BaseMotion motion;

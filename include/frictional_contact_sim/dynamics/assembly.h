@@ -103,6 +103,7 @@ private:
   void setMassPattern();
   void assembleMass(bool with_implicit);
   LawScale scaleOf(const SparseRows& rows, int row, const RowUnit& unit, double base_speed) const;
+  void shareSpeedChanges();
   void setScales();
   void bookRow(const RowBuilder& rows, int row, double impulse, const RowRecord& record, EnergyLedger& ledger) const;
 

@@ -33,6 +33,7 @@ struct ContactRow
   double friction = 0.0;
   double restitution = 0.0;
   double shift = 0.0;  ///< of the normal law [m/s]; w holds base velocity + shift
+  Eigen::Vector2d tangential_shift = Eigen::Vector2d::Zero();  ///< of an impact with tangential restitution [m/s]
   bool closing = false;
   CreepTangent creep;  ///< along tangent_1, the rolling direction then; u of the solution holds k r + c as well
 };

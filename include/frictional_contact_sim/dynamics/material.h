@@ -20,6 +20,9 @@ struct Material
   double friction = 0.8;  ///< Coulomb coefficient [-] >= 0
   double restitution = 0.0;  ///< of the normal velocity, Moreau's rule [-] in [0, 1]
   std::shared_ptr<const CreepTable> creep = nullptr;  ///< pairs only: the creep law; none: Coulomb's
+  double tangential_restitution = 0.0;  ///< of the tangential velocity, within the cone [-] in [0, 1]
+
+  bool bounces() const { return restitution > 0.0 || tangential_restitution > 0.0; }
 };
 
 struct SurfaceSide;
