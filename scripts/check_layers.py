@@ -17,7 +17,8 @@ MODULES = {
     "math": [],
     "config": [],
     "problem": ["math"],
-    "solver": ["problem", "math", "config"],
+    "separation": ["problem"],
+    "solver": ["problem", "separation", "math", "config"],
     "model": ["math"],
     "collision": ["model"],
     "dynamics": ["model", "collision", "problem"],
@@ -28,7 +29,7 @@ MODULES = {
 # Third-party headers by first path element (or whole name): the modules that may include them below src/.
 PRIVATE = {
     "fclib.h": ["problem"], "fclib.hpp": ["problem"], "hdf5.h": ["problem"], "H5Cpp.h": ["problem"],
-    "cholmod.h": ["problem", "solver"], "coin": ["problem"], "suitesparse": ["problem", "solver"],
+    "cholmod.h": ["problem", "solver"], "coin": ["problem", "separation"], "suitesparse": ["problem", "solver"],
     "fcl": ["collision"], "assimp": ["collision"], "libqhull_r": ["collision"], "libqhullcpp": ["collision"],
     "urdf_parser": ["model"], "urdf_model": ["model"], "urdf_world": ["model"], "urdf": ["model"],
     "console_bridge": ["model"], "tinyxml2.h": ["model"], "tinyxml.h": ["model"], "rospack": ["model"],

@@ -124,6 +124,21 @@ Eigen::VectorXd LinearProgram::infeasibilityRay() const
   return result;
 }
 
+Eigen::VectorXd LinearProgram::unboundedRay() const
+{
+  double* ray = Clp_unboundedRay(model_->clp);
+  if (ray == nullptr)
+    return {};
+  const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(ray, Clp_numberColumns(model_->clp));
+  Clp_freeRay(model_->clp, ray);
+  return result;
+}
+
+Eigen::VectorXd LinearProgram::reducedCosts() const
+{
+  return Eigen::Map<const Eigen::VectorXd>(Clp_getReducedCost(model_->clp), Clp_numberColumns(model_->clp));
+}
+
 Eigen::VectorXd LinearProgram::solution() const
 {
   return Eigen::Map<const Eigen::VectorXd>(Clp_getColSolution(model_->clp), Clp_numberColumns(model_->clp));

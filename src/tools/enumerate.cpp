@@ -99,6 +99,7 @@ void report(const Arguments& arguments, const EnumerationReport& found)
                      {"nodes", found.nodes},
                      {"leaves", found.leaves},
                      {"unresolved", found.unresolved},
+                     {"cuts", found.cuts},
                      {"message", found.message},
                      {"families", families}};
   std::cout << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;

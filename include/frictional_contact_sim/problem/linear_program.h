@@ -62,6 +62,10 @@ public:
    * the rows' do not meet. The sign is the simplex method's business; empty when there is none.
    */
   Eigen::VectorXd infeasibilityRay() const;
+  /** @brief A direction of the columns that proves UNBOUNDED: feasible for ever, cost falling; empty when there is none. */
+  Eigen::VectorXd unboundedRay() const;
+  /** @brief c - A^T prices() of the last solve. */
+  Eigen::VectorXd reducedCosts() const;
   /** @brief Multipliers of the rows: c - A^T y is 0 for columns between their bounds, y >= 0 where only a lower bound
    * holds. */
   Eigen::VectorXd prices() const;

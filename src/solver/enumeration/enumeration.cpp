@@ -150,6 +150,7 @@ void setVerdicts(const std::vector<IslandPart>& parts, EnumerationReport& report
     report.unique_velocity = report.unique_velocity && part.one_velocity;
     report.nodes += solutions.nodes;
     report.leaves += solutions.leaves;
+    report.cuts += solutions.cuts;
     report.unresolved += solutions.unresolved;
   }
   report.complete = report.complete || none;  // one island without solutions is enough
@@ -324,6 +325,11 @@ const OptionTable<EnumerateOptions>& EnumerateOptions::table()
            "of the proofs, relative to the problem's scale of impulses"},
           {"min_angle", &EnumerateOptions::min_angle, between(1e-9, 1.0), "rad",
            "half width of the smallest wedge of slip directions in 3D"},
+          {"cuts", &EnumerateOptions::cuts, std::vector<std::string>{"none", "most_violated", "deepest", "facets"},
+           "of violated complementarities: docs/facet_cuts.md"},
+          {"cuts_per_node", &EnumerateOptions::cuts_per_node, atLeast(1), "rounds", "each with a linear program"},
+          {"cut_depth", &EnumerateOptions::cut_depth, atLeast(0), "laws",
+           "cuts at nodes with at most so many decided; they hold below too"},
       });
   return table;
 }

@@ -24,6 +24,7 @@ IslandSolutions enumerateIsland(const Eigen::MatrixXd& W, const Eigen::VectorXd&
   result.complete = found.complete;
   result.nodes = found.nodes;
   result.unresolved = found.unresolved;
+  result.cuts = found.cuts;
   result.leaves = static_cast<long>(found.leaves.size());
   result.families = joinLeaves(island, laws, search, found.leaves);
   return result;

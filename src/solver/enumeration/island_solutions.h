@@ -12,7 +12,7 @@ struct IslandSolutions
   std::vector<IslandFamily> families;
   bool complete = false;
   bool consistent = true;  ///< false: BILATERAL rows contradict each other
-  long nodes = 0, leaves = 0, unresolved = 0;
+  long nodes = 0, leaves = 0, unresolved = 0, cuts = 0;
 };
 
 /** @param first end with the first solution */

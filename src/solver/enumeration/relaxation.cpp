@@ -172,6 +172,42 @@ void Relaxation::setBounds(const Cell& cell)
     setLaw(static_cast<int>(i), cell.modes[i], cell);
   for (const int row : equation_rows_)
     row_lower_[row] = row_upper_[row] = -shift_[row];
+  for (size_t k = 0; k < cut_rows_.size(); ++k)
+    row_upper_[cut_rows_[k]] = k < right_hand_sides_.size() && !suspended_ ? right_hand_sides_[k] : INFINITE;
+}
+
+void Relaxation::addCut(const Eigen::VectorXd& row, double right_hand_side)
+{
+  if (cut_rows_.size() == right_hand_sides_.size())
+  {
+    cut_rows_.push_back(static_cast<int>(A_.rows()));
+    appendRow(row, -INFINITE, right_hand_side);
+  }
+  else
+    changeEntries(cut_rows_[right_hand_sides_.size()], row);
+  right_hand_sides_.push_back(right_hand_side);
+}
+
+/** No shift: bounds are those of row.y itself. */
+void Relaxation::appendRow(const Eigen::VectorXd& values, double lower, double upper)
+{
+  std::vector<int> used;
+  std::vector<double> entries;
+  for (int j = 0; j < columns(); ++j)
+    if (values[j] != 0.0)
+    {
+      used.push_back(j);
+      entries.push_back(values[j]);
+    }
+  program_.addRow(lower, upper, used, entries);
+  const Eigen::Index row = A_.rows();
+  A_.conservativeResize(row + 1, Eigen::NoChange);
+  A_.row(row) = values.transpose();
+  for (Eigen::VectorXd* vector : {&shift_, &row_lower_, &row_upper_})
+    vector->conservativeResize(row + 1);
+  shift_[row] = 0.0;
+  row_lower_[row] = lower;
+  row_upper_[row] = upper;
 }
 
 Feasibility Relaxation::solve(const Cell& cell)
@@ -349,17 +385,9 @@ bool Relaxation::cutCones(const Cell& cell)
   const int column = island_.offsets[static_cast<size_t>(worst)];
   const Eigen::Vector2d direction = -y_.segment<2>(column + 1).normalized();
   const double mu = island_.laws[static_cast<size_t>(worst)].coefficient;
-  program_.addRow(0.0, INFINITE, {column, column + 1, column + 2}, {mu, direction[0], direction[1]});
-  A_.conservativeResize(A_.rows() + 1, Eigen::NoChange);
-  A_.bottomRows<1>().setZero();
-  A_.block<1, 3>(A_.rows() - 1, column) << mu, direction[0], direction[1];
-  for (Eigen::VectorXd* vector : {&shift_, &row_lower_})
-  {
-    vector->conservativeResize(A_.rows());
-    (*vector)[A_.rows() - 1] = 0.0;
-  }
-  row_upper_.conservativeResize(A_.rows());
-  row_upper_[A_.rows() - 1] = INFINITE;
+  Eigen::VectorXd facet = Eigen::VectorXd::Zero(columns());
+  facet.segment<3>(column) << mu, direction[0], direction[1];
+  appendRow(facet, 0.0, INFINITE);
   return true;
 }
 

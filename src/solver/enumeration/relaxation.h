@@ -55,6 +55,15 @@ public:
   /** @brief How far the point is from a mode of a law: the sum of its violated bounds. */
   double violation(int law, LawMode mode) const;
 
+  /** @brief A further row.y <= right_hand_side from the next solve on; the last one added is the first to go. */
+  void addCut(const Eigen::VectorXd& row, double right_hand_side);
+  /** @brief Cuts that hold now. */
+  size_t cuts() const { return right_hand_sides_.size(); }
+  /** @brief The first `count` of them remain. */
+  void keepCuts(size_t count) { right_hand_sides_.resize(count); }
+  /** @brief The next solves go without cuts, or with them again. */
+  void suspendCuts(bool suspended) { suspended_ = suspended; }
+
   /** @brief Every point of the cell solved last is one of the same cell with one law in an earlier mode. */
   bool isContained(const Cell& cell);
   /**
@@ -94,6 +103,7 @@ private:
   void setLaw(int law, LawMode mode, const Cell& cell);
   void setWedge(int law, LawMode mode, const Cell& cell);
   void turnRows(int law, double first, double second);
+  void appendRow(const Eigen::VectorXd& values, double lower, double upper);
   void changeEntries(int row, const Eigen::VectorXd& values);
   bool provesInfeasible(const Eigen::VectorXd& multipliers) const;
   Feasibility solveElastic();
@@ -115,6 +125,9 @@ private:
   Eigen::VectorXd shift_;  ///< of each row of A_: u' or e = a + shift
   Eigen::VectorXd column_lower_, column_upper_, row_lower_, row_upper_;
   std::vector<int> equation_rows_;
+  std::vector<int> cut_rows_;  ///< rows of A_ made for cuts; those behind right_hand_sides_ are idle
+  std::vector<double> right_hand_sides_;
+  bool suspended_ = false;
   Eigen::VectorXd y_;
 };
 

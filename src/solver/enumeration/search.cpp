@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mode_cuts.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -42,7 +44,47 @@ void Search::visit(Cell& cell)
   if (stopped_)
     return;
   ++result_.nodes;
-  const Feasibility feasibility = relaxation_.solve(cell);
+  const size_t inherited = relaxation_.cuts();
+  look(cell);
+  relaxation_.keepCuts(inherited);
+}
+
+/** Rounds of cuts at a node that was FEASIBLE: its point and feasibility with them. */
+Feasibility Search::addCuts(const Cell& cell, Feasibility feasibility)
+{
+  const auto undecided = std::count(cell.modes.begin(), cell.modes.end(), LawMode::UNDECIDED);
+  if (options_.cuts == EnumerationCuts::NONE ||
+      static_cast<std::ptrdiff_t>(cell.modes.size()) - undecided > options_.cut_depth)
+    return feasibility;
+  for (int round = 0; round < options_.cuts_per_node && feasibility == Feasibility::FEASIBLE; ++round)
+  {
+    const std::vector<ModeCut> cuts = modeCuts(relaxation_, island_, cell, options_);
+    if (cuts.empty())
+      break;
+    const size_t before = relaxation_.cuts();
+    for (const ModeCut& cut : cuts)
+      relaxation_.addCut(cut.row, cut.right_hand_side);
+    result_.cuts += static_cast<long>(cuts.size());
+    feasibility = relaxation_.solve(cell);
+    if (feasibility != Feasibility::UNPROVED)
+      continue;
+    relaxation_.keepCuts(before);  // the program lost its digits with them
+    return relaxation_.solve(cell);
+  }
+  return feasibility;
+}
+
+void Search::look(Cell& cell)
+{
+  Feasibility feasibility = relaxation_.solve(cell);
+  if (feasibility == Feasibility::UNPROVED && relaxation_.cuts() > 0)
+  {
+    relaxation_.suspendCuts(true);
+    feasibility = relaxation_.solve(cell);
+    relaxation_.suspendCuts(false);
+  }
+  else if (feasibility == Feasibility::FEASIBLE)
+    feasibility = addCuts(cell, feasibility);
   if (feasibility == Feasibility::INFEASIBLE)
     return;
   const bool has_point = feasibility == Feasibility::FEASIBLE;
@@ -52,12 +94,32 @@ void Search::visit(Cell& cell)
   if (law >= 0)
     branch(cell, law, has_point);
   else if (has_point)
-    close(cell);
+    closeWithoutCuts(cell);
   else
   {
     result_.complete = false;
     ++result_.unresolved;
   }
+}
+
+/** What is in a leaf is described by its modes alone. */
+void Search::closeWithoutCuts(Cell& cell)
+{
+  if (relaxation_.cuts() == 0)
+  {
+    close(cell);
+    return;
+  }
+  relaxation_.suspendCuts(true);
+  const Feasibility feasibility = relaxation_.solve(cell);
+  if (feasibility == Feasibility::FEASIBLE)
+    close(cell);
+  else if (feasibility == Feasibility::UNPROVED)
+  {
+    result_.complete = false;
+    ++result_.unresolved;
+  }
+  relaxation_.suspendCuts(false);
 }
 
 /** The undecided law that the point serves worst, -1 when all are decided. */

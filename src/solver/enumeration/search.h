@@ -15,6 +15,7 @@ struct SearchResult
   bool complete = true;
   long nodes = 0;
   long unresolved = 0;
+  long cuts = 0;
 };
 
 class Search
@@ -32,6 +33,9 @@ public:
 
 private:
   void visit(Cell& cell);
+  void look(Cell& cell);
+  Feasibility addCuts(const Cell& cell, Feasibility feasibility);
+  void closeWithoutCuts(Cell& cell);
   void close(Cell& cell);
   void closeWedges(Cell& cell);
   int nextLaw(const Cell& cell, bool has_point) const;

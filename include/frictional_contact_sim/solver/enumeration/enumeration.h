@@ -32,6 +32,10 @@
  *                   true says that no solution has impulses below impulse_bound times the problem's scale.
  * complete = false  a limit was reached or a node could be neither closed nor resolved; what is listed is still true.
  *
+ * Cuts (off by default): where a complementarity of a law is violated at a node's point, the hull of both its sides is
+ * cut off from the point, and the linear program solved again, up to cuts_per_node times (src/solver/enumeration/mode_cuts.h);
+ * docs/facet_cuts.md says what they gain.
+ *
  * Islands are enumerated apart and multiplied. Multipliers of redundant BILATERAL rows (lambda) do not count as
  * solutions of their own. Worst case exponential in the number of laws: deciding solvability is NP-complete (Cadoux
  * (2009), 1.4.6).
@@ -61,6 +65,15 @@ enum class LawMode
 };
 const char* toString(LawMode mode);
 
+/** @brief Which cuts are made of a violated complementarity. */
+enum class EnumerationCuts
+{
+  NONE,
+  MOST_VIOLATED,  ///< one, the sum of multipliers normalised
+  DEEPEST,  ///< one, the farthest from the point
+  FACETS  ///< those of the deepest one's decomposition
+};
+
 struct EnumerateOptions
 {
   int max_nodes = 5000000;  ///< of an island's search tree, >= 1
@@ -70,6 +83,9 @@ struct EnumerateOptions
   int max_families = 1000;  ///< listed of the product of islands (the counts are right in any case), >= 1
   double impulse_bound = 1e6;  ///< of the proofs, on r sqrt(W_ii) over the largest |q| of the same scaling [-], >= 1
   double min_angle = 1e-4;  ///< half width of the smallest wedge of slip directions in 3D [rad]
+  EnumerationCuts cuts = EnumerationCuts::NONE;
+  int cuts_per_node = 5;  ///< rounds of cuts, each with a linear program, >= 1
+  int cut_depth = 0;  ///< cuts at nodes with at most so many laws decided, >= 0; they hold below too
 
   /** @brief What each is, as data. */
   static const OptionTable<EnumerateOptions>& table();
@@ -117,6 +133,7 @@ struct EnumerationReport
   std::string diagnosis;  ///< NONE, PENETRATION, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE, see docs/enumeration.md
   long nodes = 0;
   long leaves = 0;  ///< pieces found
+  long cuts = 0;  ///< added
   long unresolved = 0;  ///< nodes neither closed nor resolved
   double seconds = 0.0;  ///< wall clock [s]
   std::string message;  ///< one line
