@@ -112,10 +112,13 @@ double linkSpeed(const Body& body, size_t link, const Vector6d& velocity)
 }
 }  // namespace
 
-BodyModel::BodyModel(MultibodyModel multibody_model)
+BodyModel::BodyModel(MultibodyModel multibody_model, std::shared_ptr<const DynamicBody> mechanics)
   : name(multibody_model.name)
   , tree(std::move(multibody_model))
-  , damping(Eigen::VectorXd::Zero(tree.nv))
+  , solid(std::move(mechanics))
+  , nq(solid ? solid->velocities() : tree.nq)
+  , nv(solid ? solid->velocities() : tree.nv)
+  , damping(Eigen::VectorXd::Zero(nv))
   , servo_inertia(tree.joints.size(), 0.0)
   , chains(linkChains(tree))
   , extents(linkExtents(tree))
@@ -143,8 +146,8 @@ bool BodyModel::isActuated(int joint) const
 }
 
 BodyState::BodyState(const BodyModel& model)
-  : q(zeroPosition(model.tree))
-  , v(Eigen::VectorXd::Zero(model.tree.nv))
+  : q(model.solid ? Eigen::VectorXd(Eigen::VectorXd::Zero(model.nq)) : zeroPosition(model.tree))
+  , v(Eigen::VectorXd::Zero(model.nv))
   , base_pose(model.tree.joints.front().placement)
   , drives(model.tree.joints.size())
 {
@@ -162,7 +165,7 @@ Body::Body(const BodyModel& body_model, BodyState& body_state)
   , middle(model.tree)
   , end(model.tree)
   , q_middle(state.q)
-  , v_start(Eigen::VectorXd::Zero(model.tree.nv))
+  , v_start(Eigen::VectorXd::Zero(model.nv))
   , v_free(v_start)
   , v_middle(v_start)
   , external(v_middle)
@@ -173,6 +176,7 @@ Body::Body(const BodyModel& body_model, BodyState& body_state)
   , base(model.base_motion.velocity)
   , base_turn(instantTurn(base.angular))
   , surface_turns(model.surfaces.size(), Eigen::Matrix3d::Zero())
+  , work(model.solid ? model.solid->makeWork() : nullptr)
 {
 }
 
@@ -232,8 +236,11 @@ double springEnergy(const Body& body)
 void updateEnd(Body& body)
 {
   body.end.base_pose = body.state.base_pose;
-  forwardKinematics(body.model.tree, body.state.q, body.end);
-  forwardVelocities(body.model.tree, body.state.v, body.end);
+  setPoses(body.model, body.state.q, body.end);
+  if (body.model.solid)
+    body.model.solid->setVelocities(body.state.v, body.end);
+  else
+    forwardVelocities(body.model.tree, body.state.v, body.end);
   // A moving base carries all links along; `reference` is its origin.
   if (body.model.base_motion.active)
     for (Vector6d& velocity : body.end.link_velocity)
@@ -246,7 +253,9 @@ void updateEnd(Body& body)
 void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
                   Eigen::VectorXd& q_middle)
 {
-  if (body.model.free_link)
+  if (body.model.solid)
+    q_middle = q + 0.5 * dt * v;
+  else if (body.model.free_link)
     moveFreeLinkToMidpoint(body, q, v, dt, q_middle);
   else
     integrate(body.model.tree, q, v, 0.5 * dt, q_middle);
@@ -256,13 +265,80 @@ void moveToMidpoint(Body& body, double dt)
 {
   moveHalfStep(body, body.state.q, body.state.v, dt, body.q_middle);
   body.middle.base_pose = basePose(body, 0.5 * dt);
-  forwardKinematics(body.model.tree, body.q_middle, body.middle);
-  computeMassMatrix(body.model.tree, body.middle);
+  setPoses(body.model, body.q_middle, body.middle);
+  if (body.model.solid)
+    body.model.solid->prepare(body, dt);
+  else
+    computeMassMatrix(body.model.tree, body.middle);
+}
+
+void moveToImpact(Body& body)
+{
+  body.middle.base_pose = body.state.base_pose;
+  setPoses(body.model, body.state.q, body.middle);
+  body.q_middle = body.state.q;
+  if (body.model.solid)
+    body.model.solid->prepare(body, 0.0);
+  else
+    computeMassMatrix(body.model.tree, body.middle);
+}
+
+void setPoses(const BodyModel& model, const Eigen::VectorXd& q, MultibodyData& data)
+{
+  if (model.solid)
+    model.solid->setPoses(q, data);
+  else
+    forwardKinematics(model.tree, q, data);
+}
+
+bool factorizeMass(Body& body)
+{
+  return body.model.solid ? body.model.solid->factorize(body)
+                          : factorizeMassMatrix(body.model.tree, body.implicit, body.middle);
+}
+
+void solveMass(const Body& body, Eigen::VectorXd& v)
+{
+  if (body.model.solid)
+    body.model.solid->solve(body, v);
+  else
+    solveMassMatrix(body.model.tree, body.middle, v);
+}
+
+void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns)
+{
+  if (body.model.solid)
+  {
+    body.model.solid->addPointColumns(body, point, sign, columns);
+    return;
+  }
+  const MultibodyData& data = body.middle;
+  const Eigen::Vector3d arm = point.position - data.reference;
+  for (const int j : body.model.chains[point.link])
+  {
+    const auto motion = data.motion_subspace.col(j);
+    const Eigen::Vector3d angular = motion.tail<3>();
+    columns.emplace_back(j, sign * (motion.head<3>() + angular.cross(arm)));
+  }
+}
+
+double kineticEnergy(const Body& body)
+{
+  return body.model.solid ? body.model.solid->kineticEnergy(body.state.v)
+                          : kineticEnergy(body.model.tree, body.end, body.state.v);
+}
+
+double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity)
+{
+  return body.model.solid ? body.model.solid->potentialEnergy(body, body.state.q, gravity)
+                          : potentialEnergy(body.model.tree, body.end, gravity) + springEnergy(body);
 }
 
 void setStartVelocity(Body& body, bool impact)
 {
-  if (body.model.free_link && !impact)
+  if (body.model.regime != Regime::DYNAMIC)
+    body.v_start.setZero();
+  else if (body.model.free_link && !impact)
     mapFreeLinkStart(body);
   else
     body.v_start = body.state.v;
@@ -275,9 +351,19 @@ void moveStep(const Body& body, const VectorIn& v, double dt, Eigen::VectorXd& q
     moveFreeLinkToEnd(body, v, dt, q_end, v_end);
     return;
   }
-  v_end = 0.5 * (body.v_start + v);
-  integrate(body.model.tree, body.state.q, v_end, dt, q_end);
-  v_end = v;
+  const bool is_motion = body.model.regime == Regime::DYNAMIC;
+  if (is_motion)
+    v_end = 0.5 * (body.v_start + v);
+  else
+    v_end = v;
+  if (body.model.solid)
+    q_end = body.state.q + dt * v_end;
+  else
+    integrate(body.model.tree, body.state.q, v_end, dt, q_end);
+  if (is_motion)
+    v_end = v;
+  else
+    v_end.setZero();
 }
 
 void moveToEnd(Body& body, const VectorIn& v, double dt)
@@ -289,7 +375,9 @@ void moveToEnd(Body& body, const VectorIn& v, double dt)
 
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
 {
-  if (body.model.free_link)
+  if (body.model.solid)
+    body.model.solid->computeBias(body, gravity, bias);
+  else if (body.model.free_link)
     computeFreeLinkBias(body, v, gravity, bias);
   else
     computeBiasForces(body.model.tree, v, gravity, body.middle, bias);
@@ -297,6 +385,8 @@ void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gr
 
 double pointSpeed(Body& body, const Eigen::VectorXd& v)
 {
+  if (body.model.solid)
+    return body.model.solid->pointSpeed(v);
   forwardVelocities(body.model.tree, v, body.middle);
   double speed = 0.0;
   for (size_t link = 0; link < body.middle.link_velocity.size(); ++link)
@@ -306,6 +396,14 @@ double pointSpeed(Body& body, const Eigen::VectorXd& v)
 
 void setSpeeds(Body& body)
 {
+  if (body.model.solid)
+  {
+    const DynamicBody& solid = *body.model.solid;
+    body.change = body.v_free - body.v_start;
+    body.speed = std::max(solid.pointSpeed(body.v_start), solid.pointSpeed(body.v_free));
+    body.speed_change = std::max(VELOCITY_FLOOR, solid.pointSpeed(body.change));
+    return;
+  }
   MultibodyData& data = body.middle;
   if (body.model.free_link)
     forwardVelocities(body.model.tree, body.v_start, data);  // its bias needs none
@@ -326,6 +424,11 @@ void setSpeeds(Body& body)
 void applyWrenches(Body& body, double now)
 {
   body.external.setZero();
+  if (body.model.solid)
+  {
+    body.model.solid->applyWrenches(body, now);
+    return;
+  }
   for (const ExternalWrench& wrench : body.state.wrenches)
   {
     if (now < wrench.from || now >= wrench.until)

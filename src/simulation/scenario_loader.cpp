@@ -4,6 +4,7 @@
 #include <set>
 
 #include "frictional_contact_sim/config/yaml_config.h"
+#include "elastic_keys.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
 #include "loop_keys.h"
 
@@ -23,7 +24,13 @@ BodySpec readBody(const ConfigNode& node)
 {
   BodySpec body;
   body.source = node.place();
-  node.readMap(ConfigKeys{required(key("name", [&](const ConfigNode& name) { body.name = readName(name); })),
+  const ConfigKey name = required(key("name", [&](const ConfigNode& value) { body.name = readName(value); }));
+  if (node.has("elastic"))
+  {
+    node.readMap(ConfigKeys{name} + elasticBodyKeys(body));
+    return body;
+  }
+  node.readMap(ConfigKeys{name,
                           required(key("urdf", [&](const ConfigNode& urdf) { body.urdf_path = resolveFile(urdf); })),
                           linkMaterialsKey("materials", body)} +
                bodyKeys(body));

@@ -16,6 +16,22 @@ constexpr double GAP_ROUND_OFF = 1e-14;  ///< a resting contact is no deeper [m]
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
 
+/** Why a solid's model does not hold where an answer takes it; empty where every one does. */
+std::string refusal(const std::vector<Body>& bodies, const Solution& solution, double dt)
+{
+  Eigen::VectorXd q;
+  Eigen::VectorXd v;
+  for (const Body& body : bodies)
+    if (body.model.solid)
+    {
+      q = v = body.state.q;
+      moveStep(body, solution.v.segment(body.v_offset, body.model.nv), dt, q, v);
+      if (std::string reason = body.model.solid->refusal(q); !reason.empty())
+        return reason;
+    }
+  return "";
+}
+
 /** Whether another round makes sense after a solve. */
 bool mayGoOn(SolverStatus status)
 {
@@ -104,6 +120,9 @@ void Simulator::Impl::solveStep()
   if (again == Again::NEVER)
     setUnsatisfied();
   solver.takeLeastNorm(assembly.problem(), result);
+  if (result.status == SolverStatus::CONVERGED)
+    if (const std::string reason = refusal(bodies, result.solution, context.dt); !reason.empty())
+      fail(SolverStatus::NUMERICAL_FAILURE, reason);
 }
 
 /** Whether a row asks for a separation, not for round-off only. */
@@ -171,7 +190,7 @@ void Simulator::Impl::take()
   assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)
   {
-    moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.tree.nv), context.dt);
+    moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.nv), context.dt);
     removeExpiredWrenches(body, context.middle);
   }
   assembly.accept(context, {result.solution, result.law_errors});

@@ -55,6 +55,7 @@ void checkScenario(const Scenario& scenario)
 void addDraft(const BodySpec& spec, WorldModel& world)
 {
   world.bodies.push_back(loadBody(spec, world.warnings));
+  world.bodies.back().setRegime(world.scenario.regime);
   world.start.emplace_back(world.bodies.back());
   setInitialState(spec, {world.bodies.back(), world.start.back()}, world.warnings);
 }
