@@ -142,6 +142,21 @@ Eigen::Vector3d ElasticSolid::displacement(const VectorIn& q, int node) const
   return u;
 }
 
+/** Mean displacement by mass, body axes. */
+Eigen::Vector3d ElasticSolid::centre(const VectorIn& q) const
+{
+  return Eigen::Vector3d(carried_[0].dot(q), carried_[1].dot(q), carried_[2].dot(q)) / total_mass_;
+}
+
+void ElasticSolid::recentre(BodyState& state) const
+{
+  if (is_supported_)
+    return;
+  const Eigen::Vector3d shift = centre(state.q);
+  state.base_pose.translation() += state.base_pose.linear() * shift;
+  state.q -= rigidVelocity(shift, Eigen::Vector3d::Zero());
+}
+
 std::vector<Eigen::Vector3d> ElasticSolid::displacements(const VectorIn& q) const
 {
   std::vector<Eigen::Vector3d> all;
@@ -215,6 +230,8 @@ void ElasticSolid::setVelocities(const VectorIn& v, MultibodyData& data) const
 {
   const Eigen::Matrix3d axes = data.base_pose.linear();
   data.link_velocity.front().setZero();
+  if (!is_supported_)
+    data.link_velocity.front().head<3>() = axes * centre(v);
   for (size_t k = 0; k < parts_.surface.size(); ++k)
   {
     data.link_velocity[k + 1].setZero();
@@ -306,7 +323,8 @@ void ElasticSolid::copyMass(const Body& body, double*& value) const
   value = std::copy(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), value);
 }
 
-void ElasticSolid::computeBias(const Body& body, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias) const
+void ElasticSolid::computeBias(const Body& body, const Eigen::VectorXd& /*v*/, const Eigen::Vector3d& gravity,
+                               Eigen::VectorXd& bias) const
 {
   bias.noalias() = stiffness_ * (body.q_middle + damping_ * body.v_start);
   const Eigen::Vector3d pull = body.middle.base_pose.linear().transpose() * gravity;
@@ -348,6 +366,8 @@ double ElasticSolid::potentialEnergy(const Body& body, const VectorIn& q, const 
   const Eigen::Vector3d pull = body.end.base_pose.linear().transpose() * gravity;
   for (int axis = 0; axis < 3; ++axis)
     energy -= pull[axis] * carried_[axis].dot(q);
+  if (!is_supported_)
+    energy -= total_mass_ * gravity.dot(body.end.base_pose.translation());
   return energy;
 }
 

@@ -370,13 +370,15 @@ void moveToEnd(Body& body, const VectorIn& v, double dt)
 {
   moveStep(body, v, dt, body.state.q, body.state.v);
   body.state.base_pose = basePose(body, dt);
+  if (body.model.solid)
+    body.model.solid->recentre(body.state);
   updateEnd(body);
 }
 
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
 {
   if (body.model.solid)
-    body.model.solid->computeBias(body, gravity, bias);
+    body.model.solid->computeBias(body, v, gravity, bias);
   else if (body.model.free_link)
     computeFreeLinkBias(body, v, gravity, bias);
   else

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "frictional_contact_sim/collision/convex_shape.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -118,7 +120,7 @@ SurfaceContacts::SurfaceContacts(const std::vector<Body>& bodies, const Collisio
       if (world.shape(handle).body == surface.body)
       {
         surface.handles[world.shape(handle).link] = handle;
-        is_node_[handle] = 1;
+        is_node_[handle] = world.convexShape(handle).bounding_radius == 0.0 ? 1 : 0;
       }
 }
 

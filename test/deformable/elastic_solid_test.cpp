@@ -39,7 +39,7 @@ std::string block(const std::string& name, double x, double z, const std::string
 Eigen::Vector3d momentum(const Simulator& simulator, int body)
 {
   const ElasticSolid& solid = solidOf(simulator, body);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // sum of m v: rows of M times unit translations
   for (int axis = 0; axis < 3; ++axis)
     sum[axis] = solid.carried(axis).dot(simulator.velocity(body));
   return simulator.workspace(body).end.base_pose.linear() * sum;
@@ -60,7 +60,6 @@ TEST(FreeElasticBodyTest, KeepsItsEnergyAndMomentumOverAHundredThousandSteps)
   // No rigid rotation: out of it goes what it has of angular momentum.
   const Eigen::VectorXd turn = solid.rigidVelocity(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY());
   v -= turn * (turn.dot(solid.mass() * v) / turn.dot(solid.mass() * turn));
-  const Eigen::VectorXd shift = solid.rigidVelocity(Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
   simulator.velocity(0) = v;
   simulator.stateChanged();
   const EnergyLedger start = simulator.report().energy;
@@ -79,7 +78,6 @@ TEST(FreeElasticBodyTest, KeepsItsEnergyAndMomentumOverAHundredThousandSteps)
   EXPECT_LT(worst, 1e-10 * energy);
   EXPECT_LT((momentum(simulator, 0) - p).norm(), 1e-10 * std::sqrt(2.0 * energy * solid.totalMass()));
   EXPECT_LT(std::abs(turn.dot(solid.mass() * simulator.velocity(0))), 1e-10 * std::sqrt(energy));
-  EXPECT_GT(shift.norm(), 0.0);
 }
 
 TEST(DampedElasticBodyTest, LosesWhatTheLedgerBooks)
@@ -198,7 +196,7 @@ TEST_P(DraggedSquareTest, EveryStepHasAnAnswerAndIsCertified)
   scenario.ground->friction = GetParam();
   Simulator simulator(scenario);
   int sliding = 0;
-  while (simulator.time() < 0.12)
+  while (simulator.time() < 0.06)
   {
     ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
     EXPECT_EQ(simulator.report().certificate.existence, Existence::CERTIFIED) << "at " << simulator.time();
@@ -284,11 +282,11 @@ TEST(StackedBlocksTest, NoNodeGoesThroughAnotherSurfaceOrTheGroundAndMomentumIsT
 TEST(ElasticStateTest, TheSameRunHasTheSameBitsAndASavedStateGoesOn)
 {
   const Scenario scenario = loadScenario("time_step: 0.001\nground: {friction: 0.4}\nbodies:\n" +
-                                             block("block", 0.0, 0.053),
+                                             block("block", 0.0, 0.053, ", damping: 0.002"),
                                          "test");
   Simulator one(scenario);
   Simulator two(scenario);
-  for (int step = 0; step < 60; ++step)
+  for (int step = 0; step < 150; ++step)
   {
     one.step();
     two.step();
@@ -353,7 +351,7 @@ TEST(PressedElasticBlockTest, RigidBodyAndBlockShareTheForce)
   {
     const Eigen::Vector3d& node = simulator.data(0).link_pose[link].translation();
     EXPECT_GT(node.z(), -1e-9);
-    EXPECT_LT(node.z(), simulator.position(1)[2] - 0.01 + 1e-7);
+    EXPECT_LT((simulator.data(1).link_pose[0].inverse() * node).z(), -0.01 + 1e-6);
   }
 }
 

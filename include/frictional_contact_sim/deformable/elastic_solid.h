@@ -5,8 +5,8 @@
  *
  *     M q'' + damping K q' + K q = forces,      point of node i = base_pose (X_i + q_i)
  *
- * Nodes on supports do not move in that frame, which may itself move with a constant linear velocity. The frame does
- * not turn: rotations are those of linear elasticity, so a state in which a cell (where there are none, the body on the
+ * Nodes on supports do not move in that frame, which may itself move with a constant linear velocity; without supports
+ * the frame goes along with the centre of mass. It does not turn: rotations are those of linear elasticity, so a state in which a cell (where there are none, the body on the
  * mean) has turned by more than 0.1 rad is refused. Source: Cadoux (2009), section 2.3.3; Hughes (2000), chapter 7.
  */
 #include <memory>
@@ -32,7 +32,6 @@ public:
   const Eigen::VectorXd& carried(int axis) const { return carried_[axis]; }  ///< n: M times a unit translation [kg]
   const SparseRows& mass() const { return mass_; }  ///< n x n, of the free nodes [kg]
   const SparseRows& stiffness() const { return stiffness_; }  ///< n x n [N/m]
-  bool isSupported() const { return is_supported_; }
   double totalMass() const { return total_mass_; }  ///< [kg]
   /** @brief Displacement of every node at q, body axes [m]; v gives velocities. */
   std::vector<Eigen::Vector3d> displacements(const VectorIn& q) const;
@@ -41,12 +40,14 @@ public:
   /** @brief Largest rotation at q [rad]. */
   double rotation(const VectorIn& q) const;
 
+  bool isSupported() const override { return is_supported_; }
   int velocities() const override { return static_cast<int>(mass_.rows()); }
   const std::vector<std::vector<int>>& massColumns() const override { return columns_; }
   std::unique_ptr<BodyWork> makeWork() const override;
   void setPoses(const VectorIn& q, MultibodyData& data) const override;
   void setVelocities(const VectorIn& v, MultibodyData& data) const override;
   void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns) const override;
+  void recentre(BodyState& state) const override;
   double pointSpeed(const VectorIn& v) const override;
   double nodeDistance() const override { return node_distance_; }
   const std::vector<Facet>& facets() const override { return facets_; }
@@ -55,7 +56,8 @@ public:
   void solve(const Body& body, Eigen::VectorXd& v) const override;
   void multiply(const Body& body, const Eigen::VectorXd& v, VectorOut product) const override;
   void copyMass(const Body& body, double*& value) const override;
-  void computeBias(const Body& body, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias) const override;
+  void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
+                   Eigen::VectorXd& bias) const override;
   void applyWrenches(Body& body, double now) const override;
   double kineticEnergy(const VectorIn& v) const override;
   double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const override;
@@ -64,6 +66,7 @@ public:
 
 private:
   Eigen::Vector3d displacement(const VectorIn& q, int node) const;
+  Eigen::Vector3d centre(const VectorIn& q) const;
   void setMatrices(const std::vector<int>& supports);
   void setSurface();
 

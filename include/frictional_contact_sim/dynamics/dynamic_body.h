@@ -27,6 +27,7 @@
 namespace frictional_contact_sim
 {
 struct Body;
+struct BodyState;
 
 /** @brief Columns of a point velocity: coordinate and the motion that it gives the point, coordinates ascend. */
 using PointColumns = std::vector<std::pair<int, Eigen::Vector3d>>;
@@ -60,6 +61,7 @@ public:
   virtual ~DynamicBody() = default;
 
   virtual int velocities() const = 0;  ///< n
+  virtual bool isSupported() const = 0;  ///< something holds it against every rigid motion
   /** @brief Columns of the entries of M_h, row by row, ascending. */
   virtual const std::vector<std::vector<int>>& massColumns() const = 0;
   virtual std::unique_ptr<BodyWork> makeWork() const = 0;
@@ -70,6 +72,9 @@ public:
   virtual void setVelocities(const VectorIn& v, MultibodyData& data) const = 0;
   /** @brief sign times the Jacobian of a point; supports have no columns. Appends to `columns`. */
   virtual void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns) const = 0;
+  /** @brief After a step: a body without supports takes its frame along, so that q stays as small as the deformation
+   * and round-off with it. Nothing moves. */
+  virtual void recentre(BodyState& state) const = 0;
   /** @brief Largest speed of a node [m/s]. */
   virtual double pointSpeed(const VectorIn& v) const = 0;
   virtual double nodeDistance() const = 0;  ///< smallest between two surface nodes that are joined [m]
@@ -83,13 +88,15 @@ public:
   virtual void multiply(const Body& body, const Eigen::VectorXd& v, VectorOut product) const = 0;  ///< M_h v
   /** @brief Entries of M_h (M) in the order of massColumns; `value` moves behind them. */
   virtual void copyMass(const Body& body, double*& value) const = 0;
-  /** @brief See above, at v_start and q_middle. @param gravity world axes [m/s^2] */
-  virtual void computeBias(const Body& body, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias) const = 0;
+  /** @brief See above, at q_middle and v_start; what depends on the mean velocity of the step, at `v`.
+   * @param gravity world axes [m/s^2] */
+  virtual void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
+                           Eigen::VectorXd& bias) const = 0;
   /** @brief Body::external of its wrenches at scenario time `now` [s]: forces on the node nearest to the point. */
   virtual void applyWrenches(Body& body, double now) const = 0;
 
   virtual double kineticEnergy(const VectorIn& v) const = 0;  ///< in the frame of its base [J]
-  /** @brief Elastic energy, and gravity's counted from the reference shape [J]. */
+  /** @brief Elastic energy, and gravity's: of a body with supports counted from its reference shape [J]. */
   virtual double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const = 0;
   /** @brief Power of the damping at mean velocity `v` [W] >= 0. */
   virtual double dampingPower(const VectorIn& v) const = 0;
