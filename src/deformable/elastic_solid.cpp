@@ -266,7 +266,7 @@ void ElasticSolid::addPointColumns(const Body& body, const BodyPoint& point, dou
   std::sort(columns.begin() + first, columns.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
-double ElasticSolid::pointSpeed(const VectorIn& v) const
+double ElasticSolid::pointSpeed(const Body& /*body*/, const VectorIn& v) const
 {
   double square = 0.0;
   for (size_t node = 0; node < dofs_.size(); ++node)
@@ -355,8 +355,9 @@ void ElasticSolid::applyWrenches(Body& body, double now) const
   }
 }
 
-double ElasticSolid::kineticEnergy(const VectorIn& v) const
+double ElasticSolid::kineticEnergy(const Body& body) const
 {
+  const Eigen::VectorXd& v = body.state.v;
   return 0.5 * v.dot(mass_ * v);
 }
 

@@ -37,7 +37,8 @@ void ContactSet::moveAhead(const StepContext& context)
 
 void ContactSet::setPosesAhead(const StepContext& context, bool at_end)
 {
-  const double time = (at_end ? 1.0 : context.impact ? 0.5 : 1.5) * context.dt;
+  const double next = context.regime == Regime::DYNAMIC ? 1.5 : 1.0;
+  const double time = (at_end ? 1.0 : context.impact ? 0.5 : next) * context.dt;
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     Ahead& ahead = ahead_[b];

@@ -119,9 +119,13 @@ SurfaceContacts::SurfaceContacts(const std::vector<Body>& bodies, const Collisio
     for (Surface& surface : surfaces_)
       if (world.shape(handle).body == surface.body)
       {
-        surface.handles[world.shape(handle).link] = handle;
-        is_node_[handle] = world.convexShape(handle).bounding_radius == 0.0 ? 1 : 0;
+        const bool is_node = world.convexShape(handle).bounding_radius == 0.0;
+        surface.handles[world.shape(handle).link] = is_node ? handle : -1;
+        is_node_[handle] = is_node ? 1 : 0;
       }
+  const auto hasNoNode = [](const Surface& surface)
+  { return std::all_of(surface.handles.begin(), surface.handles.end(), [](int handle) { return handle < 0; }); };
+  surfaces_.erase(std::remove_if(surfaces_.begin(), surfaces_.end(), hasNoNode), surfaces_.end());
 }
 
 void SurfaceContacts::find(const std::vector<ContactPoint>& points, const std::vector<double>& margins,

@@ -10,6 +10,16 @@ namespace
 {
 constexpr int MOST_CELLS = 1000000;  ///< along one side
 
+/** Those of all bodies that this one has too. */
+ConfigKeys sharedKeys(BodySpec& body, const std::vector<std::string>& names)
+{
+  ConfigKeys keys;
+  for (const ConfigKey& one : bodyKeys(body))
+    if (std::find(names.begin(), names.end(), one.name) != names.end())
+      keys.push_back(one);
+  return keys;
+}
+
 /** One number or a list of them. */
 std::vector<int> readCells(const ConfigNode& node)
 {
@@ -68,18 +78,59 @@ ElasticSpec readElastic(const ConfigNode& node)
   checkSource(node, spec);
   return spec;
 }
+/** [twist, curvature 1, curvature 2], or a list of these. */
+std::vector<double> readCurvatures(const ConfigNode& node, int pieces)
+{
+  const std::vector<ConfigNode> items = node.items("[twist, curvature 1, curvature 2]");
+  if (items.empty() || !items.front().isList())
+  {
+    const Eigen::Vector3d all = node.vector<3>();
+    return {all[0], all[1], all[2]};
+  }
+  std::vector<double> values;
+  for (const ConfigNode& item : items)
+    for (const double value : item.vector<3>())
+      values.push_back(value);
+  if (static_cast<int>(items.size()) != pieces)
+    node.failExpecting("three numbers, or three for each of " + std::to_string(pieces) + " pieces");
+  return values;
+}
+
+RodSpec readRod(const ConfigNode& node)
+{
+  RodSpec rod;
+  constexpr int MOST_PIECES = 1000;
+  node.readMap({required(key("length", rod.length, positive())), required(key("radius", rod.radius, positive())),
+                key("pieces", rod.pieces, 1, MOST_PIECES), key("sections", rod.sections, 1, MOST_PIECES),
+                required(key("density", rod.density, positive())),
+                required(key("young_modulus", rod.young_modulus, positive())),
+                key("poisson_ratio", rod.poisson_ratio, between(0.0, 0.5)), key("damping", rod.damping, notNegative()),
+                key("natural", [&](const ConfigNode& value) { rod.natural = readCurvatures(value, rod.pieces); }),
+                key("start", [&](const ConfigNode& value) { rod.start = readCurvatures(value, rod.pieces); })});
+  if (!(rod.length / (rod.pieces * rod.sections) > 0.0))
+    node.at("length").failExpecting("sections of some length");
+  return rod;
+}
 }  // namespace
+
+ConfigKeys rodBodyKeys(BodySpec& body)
+{
+  ConfigKeys keys = {required(key("rod",
+                                  [&body](const ConfigNode& node)
+                                  {
+                                    ElasticSpec spec;
+                                    spec.rod = readRod(node);
+                                    body.elastic = std::make_shared<ElasticSpec>(spec);
+                                  }))};
+  return keys + sharedKeys(body, {"pose", "motion", "material"});
+}
 
 ConfigKeys elasticBodyKeys(BodySpec& body)
 {
-  static const std::vector<std::string> SHARED = {"pose", "velocity", "wrenches", "motion", "material"};
   ConfigKeys keys = {required(key("elastic",
                                   [&body](const ConfigNode& node)
                                   { body.elastic = std::make_shared<ElasticSpec>(readElastic(node)); }))};
-  for (const ConfigKey& one : bodyKeys(body))
-    if (std::find(SHARED.begin(), SHARED.end(), one.name) != SHARED.end())
-      keys.push_back(one);
-  return keys;
+  return keys + sharedKeys(body, {"pose", "velocity", "wrenches", "motion", "material"});
 }
 
 }  // namespace frictional_contact_sim

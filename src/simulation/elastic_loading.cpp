@@ -23,8 +23,27 @@ const ElasticSolid& solidOf(const BodyModel& model)
 }
 }  // namespace
 
+namespace
+{
+/** A clamped rod: its shape at the start, and how its root is moved. */
+void setRodState(const BodySpec& spec, const Draft& body)
+{
+  body.state.q = static_cast<const SuperHelix&>(*body.model.solid).startPosition();
+  if (!spec.motion)
+    return;
+  if (!spec.motion->turns.empty() || !spec.motion->velocity.angular.isZero())
+    fail(spec, "motion of a rod is a translation: its root does not turn");
+  body.model.base_motion = *spec.motion;
+  body.model.base_motion.start = body.state.base_pose;
+  if (spec.motion->isProgram())
+    body.state.base_pose = programPose(body.model.base_motion, 0.0);
+}
+}  // namespace
+
 BodyModel loadElastic(const BodySpec& spec)
 {
+  if (const std::optional<RodSpec>& rod = spec.elastic->rod)
+    return BodyModel(sectionTree(spec.name, *rod), std::make_shared<SuperHelix>(*rod));
   try
   {
     const std::shared_ptr<const ElasticSolid> solid = buildElastic(spec.name, *spec.elastic);
@@ -39,8 +58,13 @@ BodyModel loadElastic(const BodySpec& spec)
 
 void setElasticState(const BodySpec& spec, const Draft& body)
 {
-  const ElasticSolid& solid = solidOf(body.model);
   body.state.base_pose = spec.pose.value_or(Eigen::Isometry3d::Identity());
+  if (spec.elastic->rod)
+  {
+    setRodState(spec, body);
+    return;
+  }
+  const ElasticSolid& solid = solidOf(body.model);
   const Eigen::Matrix3d back = body.state.base_pose.linear().transpose();
   const bool is_moving = !spec.linear_velocity.isZero() || !spec.angular_velocity.isZero();
   if (is_moving && solid.isSupported())
@@ -74,7 +98,7 @@ void placeElastic(const BodySpec& spec, const Draft& body, WorldModel& world)
   world.collision.setPoses(handle, moved.end);
   const double lowest = world.collision.lowestPoint(handle);
   const double ground = world.scenario.ground ? world.scenario.ground->height : 0.0;
-  if (!spec.pose && !solidOf(body.model).isSupported())
+  if (!spec.pose && !body.model.solid->isSupported())
   {
     body.state.base_pose.translation().z() += ground + DROP_HEIGHT - lowest;
     updateEnd(moved);

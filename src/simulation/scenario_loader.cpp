@@ -25,9 +25,9 @@ BodySpec readBody(const ConfigNode& node)
   BodySpec body;
   body.source = node.place();
   const ConfigKey name = required(key("name", [&](const ConfigNode& value) { body.name = readName(value); }));
-  if (node.has("elastic"))
+  if (node.has("elastic") || node.has("rod"))
   {
-    node.readMap(ConfigKeys{name} + elasticBodyKeys(body));
+    node.readMap(ConfigKeys{name} + (node.has("rod") ? rodBodyKeys(body) : elasticBodyKeys(body)));
     return body;
   }
   node.readMap(ConfigKeys{name,

@@ -303,7 +303,7 @@ TEST(ElasticStaticsTest, CantileverBendsAsTimoshenkoSaysWithTheOrderOfTheMesh)
         tip = std::min(tip, data.link_pose[link].translation().z() - 0.1);
     error[k] = -tip / exact - 1.0;
   }
-  EXPECT_LT(std::abs(error[2]), 0.01);
+  EXPECT_LT(std::abs(error[2] + (error[2] - error[1]) / 3.0), 0.005) << "extrapolated to no mesh";
   EXPECT_NEAR(std::log2((error[0] - error[1]) / (error[1] - error[2])), 2.0, 0.4);
 }
 
@@ -337,11 +337,10 @@ TEST(ElasticStaticsTest, QuasiStaticLoadStepsEndInTheStaticState)
   EXPECT_LT((coarse.first - fine.first).lpNorm<Eigen::Infinity>(), 1e-6);
 }
 
-TEST(ElasticStaticsTest, BlockUnderItsOwnWeightShortensByHalfTheColumn)
+TEST(ElasticStaticsTest, BlockUnderItsOwnWeightIsLongerByHalfTheColumn)
 {
-  // A column on a frictionless ground, top free but for guides: plane stress, nu = 0, u(top) = rho g h^2/(2 E), exact at
-  // the nodes of linear elements with consistent loads. Held against rigid motion by the ground and a side that slides
-  // is not offered; so it hangs: the same by symmetry.
+  // A column that hangs: plane stress, nu = 0, u = rho g h^2/(2 E). In one dimension linear elements have it exact at
+  // the nodes; here triangles share the load of the lowest cells unevenly, 2/16^2 of a sixteenth.
   Simulator simulator(loadScenario("static: true\nbodies:\n  - name: column\n    elastic: {box: [0.05, 0.4], cells: [2, 16], "
                                    "young_modulus: 1.0e6, poisson_ratio: 0.0, density: 1000, plane: stress, fixed: [top]}\n",
                                    "test"));
@@ -349,7 +348,8 @@ TEST(ElasticStaticsTest, BlockUnderItsOwnWeightShortensByHalfTheColumn)
   double lowest = 0.0;
   for (const Eigen::Isometry3d& pose : simulator.data(0).link_pose)
     lowest = std::min(lowest, pose.translation().z());
-  EXPECT_NEAR(-lowest - 0.2, 1000 * 9.81 * 0.16 / 2e6, 1e-9);
+  const double exact = 1000 * 9.81 * 0.16 / 2e6;
+  EXPECT_NEAR(-lowest - 0.2, exact, 1e-3 * exact);
 }
 
 TEST(StaticsKeyTest, WhatCannotBeAskedIsRefusedByName)

@@ -48,7 +48,7 @@ public:
   void setVelocities(const VectorIn& v, MultibodyData& data) const override;
   void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns) const override;
   void recentre(BodyState& state) const override;
-  double pointSpeed(const VectorIn& v) const override;
+  double pointSpeed(const Body& body, const VectorIn& v) const override;
   double nodeDistance() const override { return node_distance_; }
   const std::vector<Facet>& facets() const override { return facets_; }
   void prepare(Body& body, double dt) const override;
@@ -59,7 +59,7 @@ public:
   void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
                    Eigen::VectorXd& bias) const override;
   void applyWrenches(Body& body, double now) const override;
-  double kineticEnergy(const VectorIn& v) const override;
+  double kineticEnergy(const Body& body) const override;
   double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const override;
   double dampingPower(const VectorIn& v) const override;
   std::string refusal(const VectorIn& q) const override;

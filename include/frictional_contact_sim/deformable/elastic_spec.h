@@ -1,19 +1,23 @@
 #pragma once
 /**
  * @file elastic_spec.h
- * @brief A linear elastic body as a scenario describes it, and what is made of it.
+ * @brief A linear elastic body or a rod as a scenario describes it, and what is made of it.
  */
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "frictional_contact_sim/deformable/elastic_solid.h"
+#include "frictional_contact_sim/deformable/super_helix.h"
 
 namespace frictional_contact_sim
 {
-/** @brief One of four sources, by what is not empty: box, bar (length > 0), mesh, mass (with stiffness and nodes). */
+/** @brief A rod, or one of four sources, by what is not empty: box, bar (length > 0), mesh, mass (with stiffness and
+ * nodes). */
 struct ElasticSpec
 {
+  std::optional<RodSpec> rod;
   std::vector<double> box;  ///< two sizes (x, z) or three [m] > 0
   double bar = 0.0;  ///< length [m]
   std::vector<int> cells;  ///< of box and bar, one number a size

@@ -75,8 +75,8 @@ public:
   /** @brief After a step: a body without supports takes its frame along, so that q stays as small as the deformation
    * and round-off with it. Nothing moves. */
   virtual void recentre(BodyState& state) const = 0;
-  /** @brief Largest speed of a node [m/s]. */
-  virtual double pointSpeed(const VectorIn& v) const = 0;
+  /** @brief Largest speed of a point at the midpoint [m/s], or a bound of it. */
+  virtual double pointSpeed(const Body& body, const VectorIn& v) const = 0;
   virtual double nodeDistance() const = 0;  ///< smallest between two surface nodes that are joined [m]
   virtual const std::vector<Facet>& facets() const = 0;
 
@@ -95,7 +95,7 @@ public:
   /** @brief Body::external of its wrenches at scenario time `now` [s]: forces on the node nearest to the point. */
   virtual void applyWrenches(Body& body, double now) const = 0;
 
-  virtual double kineticEnergy(const VectorIn& v) const = 0;  ///< in the frame of its base [J]
+  virtual double kineticEnergy(const Body& body) const = 0;  ///< of the state, in the frame of its base [J]
   /** @brief Elastic energy, and gravity's: of a body with supports counted from its reference shape [J]. */
   virtual double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const = 0;
   /** @brief Power of the damping at mean velocity `v` [W] >= 0. */
