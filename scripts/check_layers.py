@@ -22,7 +22,8 @@ MODULES = {
     "model": ["math"],
     "collision": ["model"],
     "dynamics": ["model", "collision", "problem"],
-    "simulation": ["dynamics", "solver", "config"],
+    "deformable": ["dynamics", "collision"],
+    "simulation": ["dynamics", "deformable", "solver", "config"],
     "rolling": ["math", "solver", "config"],
     "ros": ["simulation", "config"],
 }

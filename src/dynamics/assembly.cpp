@@ -16,7 +16,7 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
   for (Body& body : bodies_)
   {
     body.v_offset = velocities_;
-    velocities_ += body.model.tree.nv;
+    velocities_ += body.model.nv;
     body_of_.resize(velocities_, static_cast<int>(&body - bodies_.data()));
     joint_body_.resize(joint_body_.size() + body.model.tree.joints.size(), static_cast<int>(&body - bodies_.data()));
   }
@@ -31,6 +31,10 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
         if (i != j)
           mass_columns_[body.v_offset + j].push_back(body.v_offset + i);
       }
+  for (const Body& body : bodies_)
+    for (int i = 0; body.model.solid && i < body.model.nv; ++i)
+      for (const int j : body.model.solid->massColumns()[static_cast<size_t>(i)])
+        mass_columns_[body.v_offset + i].push_back(body.v_offset + j);
   for (std::vector<int>& columns : mass_columns_)
     std::sort(columns.begin(), columns.end());
   v_old_.resize(velocities_);
@@ -42,7 +46,7 @@ void StepAssembly::begin(StepContext& context)
   for (Body& body : bodies_)
   {
     setStartVelocity(body, context.impact);
-    v_old_.segment(body.v_offset, body.model.tree.nv) = body.v_start;
+    v_old_.segment(body.v_offset, body.model.nv) = body.v_start;
   }
   context.v_old = &v_old_;
   for (const std::unique_ptr<RowSource>& source : sources_)
@@ -56,7 +60,7 @@ int StepAssembly::assembleForces(const StepContext& context)
   force_.resize(velocities_);
   int singular = -1;
   for (size_t b = 0; b < bodies_.size(); ++b)
-    if (bodies_[b].model.tree.nv > 0 && !assembleForces(context, static_cast<int>(b)))
+    if (bodies_[b].model.nv > 0 && !assembleForces(context, static_cast<int>(b)))
       singular = static_cast<int>(b);
   return singular;
 }
@@ -137,12 +141,15 @@ void StepAssembly::assembleMass(bool with_implicit)
     setMassPattern();
   double* value = problem_.M.valuePtr();
   for (const Body& body : bodies_)
-    for (int i = 0; i < body.model.tree.nv; ++i)
-      for (const int column : mass_columns_[body.v_offset + i])
-      {
-        const int j = column - body.v_offset;
-        *value++ = body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0);
-      }
+    if (body.model.solid)
+      body.model.solid->copyMass(body, value);
+    else
+      for (int i = 0; i < body.model.nv; ++i)
+        for (const int column : mass_columns_[body.v_offset + i])
+        {
+          const int j = column - body.v_offset;
+          *value++ = body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0);
+        }
   for (const double mass : sink_.auxiliaryMass())
     *value++ = mass;
 }
@@ -151,12 +158,14 @@ void StepAssembly::assembleMass(bool with_implicit)
 bool StepAssembly::assembleForces(const StepContext& context, int index)
 {
   Body& body = bodies_[index];
-  const MultibodyModel& tree = body.model.tree;
-  auto momentum = momentum_.segment(body.v_offset, tree.nv);  // M v_k + dt applied + c, without bias
-  momentum.noalias() = body.middle.mass_matrix * body.v_start;
+  auto momentum = momentum_.segment(body.v_offset, body.model.nv);  // M v_k + dt applied + c, without bias
+  if (body.model.solid)
+    body.model.solid->multiply(body, body.v_start, momentum);
+  else
+    momentum.noalias() = body.middle.mass_matrix * body.v_start;
   if (context.impact)
   {
-    force_.segment(body.v_offset, tree.nv) = -momentum;
+    force_.segment(body.v_offset, body.model.nv) = -momentum;
     body.speed = pointSpeed(body, body.v_start);
     body.speed_change = std::max(VELOCITY_FLOOR, context.dt * context.gravity.norm());  // of the step that follows
     return true;
@@ -166,10 +175,10 @@ bool StepAssembly::assembleForces(const StepContext& context, int index)
   for (const std::unique_ptr<RowSource>& source : sources_)
     source->addMomentum(context, index, momentum);
   // A free link has its motion without a factor, and asks for one when its bias is to be put in again.
-  if (!body.model.free_link && !factorizeMassMatrix(tree, body.implicit, body.middle))
+  if (!body.model.free_link && !factorizeMass(body))
     return false;
   predict(context, body);
-  force_.segment(body.v_offset, tree.nv) = context.dt * body.bias - momentum;
+  force_.segment(body.v_offset, body.model.nv) = context.dt * body.bias - momentum;
   return true;
 }
 
@@ -246,7 +255,10 @@ void StepAssembly::clear()
   problem_.scales.clear();
   problem_.bilateral_scales.clear();
   for (Body& body : bodies_)
-    body.middle.mass_matrix.setIdentity();
+    if (body.model.solid)
+      body.model.solid->prepare(body, 0.0);
+    else
+      body.middle.mass_matrix.setIdentity();
   assembleMass(false);
 }
 
@@ -277,7 +289,7 @@ void StepAssembly::setMeanVelocity(const Solution& solution)
   v_mean_.setZero(sink_.columns());
   for (Body& body : bodies_)
   {
-    const int nv = body.model.tree.nv;
+    const int nv = body.model.nv;
     body.v_middle = 0.5 * (body.v_start + solution.v.segment(body.v_offset, nv));
     v_mean_.segment(body.v_offset, nv) = body.v_middle;
   }
@@ -317,9 +329,11 @@ void StepAssembly::book(const StepContext& context, const Solution& solution, En
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     const Body& body = bodies_[b];
-    const auto new_velocity = solution.v.segment(body.v_offset, body.model.tree.nv);
+    const auto new_velocity = solution.v.segment(body.v_offset, body.model.nv);
     ledger.actuators += context.dt * body.external.dot(body.v_middle);
     ledger.joints += context.dt * (body.model.damping.array() * new_velocity.array() * body.v_middle.array()).sum();
+    if (body.model.solid)
+      ledger.joints += context.dt * body.model.solid->dampingPower(body.v_middle);
     for (const std::unique_ptr<RowSource>& source : sources_)
       source->book(context, static_cast<int>(b), solution, ledger);
   }

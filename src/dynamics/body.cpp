@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include "frictional_contact_sim/dynamics/free_link.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
@@ -15,88 +14,6 @@ namespace frictional_contact_sim
 {
 namespace
 {
-
-struct Reach
-{
-  double operator()(const Sphere& sphere) const { return sphere.radius; }
-  double operator()(const Box& box) const { return box.half_size.norm(); }
-  double operator()(const Cylinder& cylinder) const { return std::hypot(cylinder.radius, cylinder.half_length); }
-  double operator()(const Capsule& capsule) const { return capsule.radius + capsule.half_length; }
-  double operator()(const Mesh&) const { return 0.0; }
-  double operator()(const HalfSpace&) const { return 0.0; }
-};
-
-std::vector<double> linkExtents(const MultibodyModel& model)
-{
-  std::vector<double> extents(model.links.size(), 0.0);
-  for (const CollisionShape& shape : model.shapes)
-    if (!std::holds_alternative<Mesh>(shape.geometry))  // known when it is loaded: BodyModel::setMeshReach
-      extents[shape.link] =
-          std::max(extents[shape.link], shape.placement.translation().norm() + std::visit(Reach(), shape.geometry));
-  return extents;
-}
-
-void addMeshes(const MultibodyModel& model, const std::vector<double>& mesh_reach, std::vector<double>& extents)
-{
-  for (size_t k = 0; k < mesh_reach.size(); ++k)
-    extents[model.shapes[k].link] = std::max(extents[model.shapes[k].link], mesh_reach[k]);
-}
-
-std::vector<double> linkSizes(const MultibodyModel& model, const std::vector<double>& extents)
-{
-  std::vector<double> sizes = extents;
-  std::vector<bool> shaped(sizes.size(), false);
-  for (const CollisionShape& shape : model.shapes)
-    shaped[shape.link] = true;
-  for (size_t link = 0; link < sizes.size(); ++link)
-  {
-    const RigidInertia& inertia = model.links[link].inertia;
-    // The largest radius of gyration is at most that of the polar moment, half the trace.
-    if (!shaped[link] && inertia.mass > 0.0)
-      sizes[link] = inertia.center.norm() + std::sqrt(0.5 * inertia.rotational.trace() / inertia.mass);
-  }
-  return sizes;
-}
-
-/** See BodyModel::reach. Leaves first: what hangs on a link is known before the link's own joint asks. */
-Eigen::VectorXd jointReach(const MultibodyModel& model, const std::vector<double>& sizes)
-{
-  std::vector<double> farthest = sizes;  // of the subtree, from the link's origin
-  Eigen::VectorXd reach = Eigen::VectorXd::Ones(model.nv);
-  for (int link = static_cast<int>(model.links.size()) - 1; link >= 0; --link)
-  {
-    const Joint& joint = model.joints[link];
-    double slide = 0.0;
-    if (joint.type == JointType::PRISMATIC && std::isfinite(joint.limit.upper - joint.limit.lower))
-      slide = std::max(std::abs(joint.limit.lower), std::abs(joint.limit.upper));
-    const int size = velocitySize(joint.type);
-    const int linear = joint.type == JointType::FLOATING    ? 3
-                       : joint.type == JointType::PLANAR    ? 2
-                       : joint.type == JointType::PRISMATIC ? 1
-                                                            : 0;
-    for (int k = linear; k < size; ++k)
-      reach[joint.v_index + k] = farthest[link] > 0.0 ? farthest[link] : 1.0;
-    if (joint.parent >= 0)
-      farthest[joint.parent] =
-          std::max(farthest[joint.parent], joint.placement.translation().norm() + slide + farthest[link]);
-  }
-  return reach;
-}
-
-std::vector<std::vector<int>> linkChains(const MultibodyModel& model)
-{
-  std::vector<std::vector<int>> chains(model.links.size());
-  for (size_t link = 0; link < model.joints.size(); ++link)
-  {
-    const Joint& joint = model.joints[link];
-    if (joint.parent >= 0)
-      chains[link] = chains[joint.parent];
-    for (int k = 0; k < velocitySize(joint.type); ++k)
-      chains[link].push_back(joint.v_index + k);
-  }
-  return chains;
-}
-
 /** Largest speed of a point of one link, from its velocity about the reference. */
 double linkSpeed(const Body& body, size_t link, const Vector6d& velocity)
 {
@@ -112,57 +29,13 @@ double linkSpeed(const Body& body, size_t link, const Vector6d& velocity)
 }
 }  // namespace
 
-BodyModel::BodyModel(MultibodyModel multibody_model)
-  : name(multibody_model.name)
-  , tree(std::move(multibody_model))
-  , damping(Eigen::VectorXd::Zero(tree.nv))
-  , servo_inertia(tree.joints.size(), 0.0)
-  , chains(linkChains(tree))
-  , extents(linkExtents(tree))
-  , sizes(linkSizes(tree, extents))
-  , reach(jointReach(tree, sizes))
-  , free_link(isFreeLink(tree))
-  , isotropic(isIsotropic(tree))
-  , schedules(tree.joints.size())
-{
-  for (const Joint& joint : tree.joints)
-    if (velocitySize(joint.type) == 1)
-      damping[joint.v_index] = joint.damping;
-}
-
-void BodyModel::setMeshReach(const std::vector<double>& mesh_reach)
-{
-  addMeshes(tree, mesh_reach, extents);
-  sizes = linkSizes(tree, extents);
-  reach = jointReach(tree, sizes);
-}
-
-bool BodyModel::isActuated(int joint) const
-{
-  return velocitySize(tree.joints[joint].type) == 1 && tree.joints[joint].mimic.joint < 0;
-}
-
-BodyState::BodyState(const BodyModel& model)
-  : q(zeroPosition(model.tree))
-  , v(Eigen::VectorXd::Zero(model.tree.nv))
-  , base_pose(model.tree.joints.front().placement)
-  , drives(model.tree.joints.size())
-{
-  for (size_t j = 0; j < drives.size(); ++j)
-  {
-    drives[j].command.kp = 0.0;
-    drives[j].command.kd = 0.0;
-    drives[j].effort_limit = model.tree.joints[j].limit.effort;
-  }
-}
-
 Body::Body(const BodyModel& body_model, BodyState& body_state)
   : model(body_model)
   , state(body_state)
   , middle(model.tree)
   , end(model.tree)
   , q_middle(state.q)
-  , v_start(Eigen::VectorXd::Zero(model.tree.nv))
+  , v_start(Eigen::VectorXd::Zero(model.nv))
   , v_free(v_start)
   , v_middle(v_start)
   , external(v_middle)
@@ -173,6 +46,7 @@ Body::Body(const BodyModel& body_model, BodyState& body_state)
   , base(model.base_motion.velocity)
   , base_turn(instantTurn(base.angular))
   , surface_turns(model.surfaces.size(), Eigen::Matrix3d::Zero())
+  , work(model.solid ? model.solid->makeWork() : nullptr)
 {
 }
 
@@ -210,9 +84,10 @@ void setBaseTime(Body& body, double time, double dt, bool in_step)
     const Eigen::Isometry3d to = programPose(motion, center + 0.5 * dt);
     return BaseVelocity{(to.translation() - from.translation()) / dt, rotationBetween(from.linear(), to.linear()) / dt};
   };
-  // Rows speak of the next midpoint: the chord from this one to that one is what they need, exactly.
+  // Rows speak of the next midpoint: the chord from this one to that one is what they need, exactly. (From rest to
+  // rest: of the end of the step.)
   const BaseVelocity start = mean(time);
-  body.base = in_step ? mean(time + dt) : start;
+  body.base = in_step ? mean(time + (body.model.regime == Regime::DYNAMIC ? 1.0 : 0.5) * dt) : start;
   body.base_turn = turn(body.base.angular);
   body.base_rate = {(body.base.linear - start.linear) / dt, (body.base.angular - start.angular) / dt};
 }
@@ -232,8 +107,11 @@ double springEnergy(const Body& body)
 void updateEnd(Body& body)
 {
   body.end.base_pose = body.state.base_pose;
-  forwardKinematics(body.model.tree, body.state.q, body.end);
-  forwardVelocities(body.model.tree, body.state.v, body.end);
+  setPoses(body.model, body.state.q, body.end);
+  if (body.model.solid)
+    body.model.solid->setVelocities(body.state.v, body.end);
+  else
+    forwardVelocities(body.model.tree, body.state.v, body.end);
   // A moving base carries all links along; `reference` is its origin.
   if (body.model.base_motion.active)
     for (Vector6d& velocity : body.end.link_velocity)
@@ -246,7 +124,9 @@ void updateEnd(Body& body)
 void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::VectorXd& v, double dt,
                   Eigen::VectorXd& q_middle)
 {
-  if (body.model.free_link)
+  if (body.model.solid)
+    q_middle = q + 0.5 * dt * v;
+  else if (body.model.free_link)
     moveFreeLinkToMidpoint(body, q, v, dt, q_middle);
   else
     integrate(body.model.tree, q, v, 0.5 * dt, q_middle);
@@ -255,14 +135,82 @@ void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::Vecto
 void moveToMidpoint(Body& body, double dt)
 {
   moveHalfStep(body, body.state.q, body.state.v, dt, body.q_middle);
-  body.middle.base_pose = basePose(body, 0.5 * dt);
-  forwardKinematics(body.model.tree, body.q_middle, body.middle);
-  computeMassMatrix(body.model.tree, body.middle);
+  // Gaps of a step from rest to rest are those it starts with.
+  body.middle.base_pose = basePose(body, body.model.regime == Regime::DYNAMIC ? 0.5 * dt : 0.0);
+  setPoses(body.model, body.q_middle, body.middle);
+  if (body.model.solid)
+    body.model.solid->prepare(body, dt);
+  else
+    computeMassMatrix(body.model.tree, body.middle);
+}
+
+void moveToImpact(Body& body)
+{
+  body.middle.base_pose = body.state.base_pose;
+  setPoses(body.model, body.state.q, body.middle);
+  body.q_middle = body.state.q;
+  if (body.model.solid)
+    body.model.solid->prepare(body, 0.0);
+  else
+    computeMassMatrix(body.model.tree, body.middle);
+}
+
+void setPoses(const BodyModel& model, const Eigen::VectorXd& q, MultibodyData& data)
+{
+  if (model.solid)
+    model.solid->setPoses(q, data);
+  else
+    forwardKinematics(model.tree, q, data);
+}
+
+bool factorizeMass(Body& body)
+{
+  return body.model.solid ? body.model.solid->factorize(body)
+                          : factorizeMassMatrix(body.model.tree, body.implicit, body.middle);
+}
+
+void solveMass(const Body& body, Eigen::VectorXd& v)
+{
+  if (body.model.solid)
+    body.model.solid->solve(body, v);
+  else
+    solveMassMatrix(body.model.tree, body.middle, v);
+}
+
+void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns)
+{
+  if (body.model.solid)
+  {
+    body.model.solid->addPointColumns(body, point, sign, columns);
+    return;
+  }
+  const MultibodyData& data = body.middle;
+  const Eigen::Vector3d arm = point.position - data.reference;
+  for (const int j : body.model.chains[point.link])
+  {
+    const auto motion = data.motion_subspace.col(j);
+    const Eigen::Vector3d angular = motion.tail<3>();
+    columns.emplace_back(j, sign * (motion.head<3>() + angular.cross(arm)));
+  }
+}
+
+double kineticEnergy(const Body& body)
+{
+  return body.model.solid ? body.model.solid->kineticEnergy(body)
+                          : kineticEnergy(body.model.tree, body.end, body.state.v);
+}
+
+double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity)
+{
+  return body.model.solid ? body.model.solid->potentialEnergy(body, body.state.q, gravity)
+                          : potentialEnergy(body.model.tree, body.end, gravity) + springEnergy(body);
 }
 
 void setStartVelocity(Body& body, bool impact)
 {
-  if (body.model.free_link && !impact)
+  if (body.model.regime != Regime::DYNAMIC)
+    body.v_start.setZero();
+  else if (body.model.free_link && !impact)
     mapFreeLinkStart(body);
   else
     body.v_start = body.state.v;
@@ -275,21 +223,35 @@ void moveStep(const Body& body, const VectorIn& v, double dt, Eigen::VectorXd& q
     moveFreeLinkToEnd(body, v, dt, q_end, v_end);
     return;
   }
-  v_end = 0.5 * (body.v_start + v);
-  integrate(body.model.tree, body.state.q, v_end, dt, q_end);
-  v_end = v;
+  const bool is_motion = body.model.regime == Regime::DYNAMIC;
+  if (is_motion)
+    v_end = 0.5 * (body.v_start + v);
+  else
+    v_end = v;
+  if (body.model.solid)
+    q_end = body.state.q + dt * v_end;
+  else
+    integrate(body.model.tree, body.state.q, v_end, dt, q_end);
+  if (is_motion)
+    v_end = v;
+  else
+    v_end.setZero();
 }
 
 void moveToEnd(Body& body, const VectorIn& v, double dt)
 {
   moveStep(body, v, dt, body.state.q, body.state.v);
   body.state.base_pose = basePose(body, dt);
+  if (body.model.solid)
+    body.model.solid->recentre(body.state);
   updateEnd(body);
 }
 
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
 {
-  if (body.model.free_link)
+  if (body.model.solid)
+    body.model.solid->computeBias(body, v, gravity, bias);
+  else if (body.model.free_link)
     computeFreeLinkBias(body, v, gravity, bias);
   else
     computeBiasForces(body.model.tree, v, gravity, body.middle, bias);
@@ -297,6 +259,8 @@ void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gr
 
 double pointSpeed(Body& body, const Eigen::VectorXd& v)
 {
+  if (body.model.solid)
+    return body.model.solid->pointSpeed(body, v);
   forwardVelocities(body.model.tree, v, body.middle);
   double speed = 0.0;
   for (size_t link = 0; link < body.middle.link_velocity.size(); ++link)
@@ -306,6 +270,14 @@ double pointSpeed(Body& body, const Eigen::VectorXd& v)
 
 void setSpeeds(Body& body)
 {
+  if (body.model.solid)
+  {
+    const DynamicBody& solid = *body.model.solid;
+    body.change = body.v_free - body.v_start;
+    body.speed = std::max(solid.pointSpeed(body, body.v_start), solid.pointSpeed(body, body.v_free));
+    body.speed_change = std::max(VELOCITY_FLOOR, solid.pointSpeed(body, body.change));
+    return;
+  }
   MultibodyData& data = body.middle;
   if (body.model.free_link)
     forwardVelocities(body.model.tree, body.v_start, data);  // its bias needs none
@@ -326,6 +298,11 @@ void setSpeeds(Body& body)
 void applyWrenches(Body& body, double now)
 {
   body.external.setZero();
+  if (body.model.solid)
+  {
+    body.model.solid->applyWrenches(body, now);
+    return;
+  }
   for (const ExternalWrench& wrench : body.state.wrenches)
   {
     if (now < wrench.from || now >= wrench.until)

@@ -219,9 +219,9 @@ void ClosureRows::moveAhead(const StepContext& context, const Solution& solution
       std::unique_ptr<Ahead>& ahead = ahead_[static_cast<size_t>(index)];
       if (!ahead)
         ahead = std::make_unique<Ahead>(body);
-      if (body.model.tree.nv > 0)
+      if (body.model.nv > 0)
       {
-        ahead->v = solution.v.segment(body.v_offset, body.model.tree.nv);
+        ahead->v = solution.v.segment(body.v_offset, body.model.nv);
         moveStep(body, ahead->v, context.dt, ahead->q_end, ahead->v_end);
         moveHalfStep(body, ahead->q_end, ahead->v_end, context.dt, ahead->q);
       }

@@ -5,7 +5,6 @@
 
 #include "frictional_contact_sim/dynamics/contact_set.h"
 #include "frictional_contact_sim/dynamics/row_source.h"
-#include "frictional_contact_sim/model/kinematics.h"
 
 namespace frictional_contact_sim
 {
@@ -24,7 +23,7 @@ void ContactSet::moveAhead(const StepContext& context)
     const Body& body = bodies_[b];
     Ahead& ahead = ahead_[b];
     margins_ahead_[b] = context.dt * speeds_[b] > STILL ? TOUCHING : UNSEEN;
-    if (body.model.tree.nv == 0)
+    if (body.model.nv == 0)
       continue;
     if (context.impact)
     {
@@ -38,12 +37,13 @@ void ContactSet::moveAhead(const StepContext& context)
 
 void ContactSet::setPosesAhead(const StepContext& context, bool at_end)
 {
-  const double time = (at_end ? 1.0 : context.impact ? 0.5 : 1.5) * context.dt;
+  const double next = context.regime == Regime::DYNAMIC ? 1.5 : 1.0;
+  const double time = (at_end ? 1.0 : context.impact ? 0.5 : next) * context.dt;
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     Ahead& ahead = ahead_[b];
     ahead.data.base_pose = basePose(bodies_[b], time);
-    forwardKinematics(bodies_[b].model.tree, at_end ? ahead.q_end : ahead.q, ahead.data);
+    frictional_contact_sim::setPoses(bodies_[b].model, at_end ? ahead.q_end : ahead.q, ahead.data);
     world_.setPoses(static_cast<int>(b), ahead.data);
   }
 }
@@ -71,7 +71,7 @@ void ContactSet::findOverlaps()
 {
   touching_pairs_.clear();
   overlaps_.clear();
-  for (const ContactPoint& point : world_.detect(margins_ahead_))
+  for (const ContactPoint& point : detect(margins_ahead_, true))
   {
     if (touching_pairs_.empty() || touching_pairs_.back() != point.id.shapes)
       touching_pairs_.push_back(point.id.shapes);
@@ -193,7 +193,7 @@ bool ContactSet::dropGhosts(const StepContext& context)
   for (size_t b = 0; b < bodies_.size(); ++b)
     if (margins_ahead_[b] >= 0.0)
       margins_ahead_[b] = std::max(margins_ahead_[b], context.dt * speeds_[b]);
-  const std::vector<ContactPoint>& ahead = world_.detect(margins_ahead_);
+  const std::vector<ContactPoint>& ahead = detect(margins_ahead_, true);
   bool dropped = false;
   for (Candidate& candidate : candidates_)
   {

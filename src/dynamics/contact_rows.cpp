@@ -130,21 +130,22 @@ void ContactRows::addRows(const StepContext& context, RowSink& sink)
     add(context, static_cast<int>(i), sink);
 }
 
-void ContactRows::collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
-                                 PointColumns& columns) const
+/** Of both sides, in the columns of the problem. */
+void ContactRows::collectColumns(const ContactPoint& point)
 {
-  columns.clear();
-  if (shape.body < 0)
-    return;
-  const Body& body = bodies_[shape.body];
-  const MultibodyData& data = body.middle;
-  const Eigen::Vector3d arm = position - data.reference;
-  for (const int j : body.model.chains[shape.link])
+  const auto collect = [&](int handle, Feature feature, double sign, PointColumns& columns)
   {
-    const auto motion = data.motion_subspace.col(j);
-    const Eigen::Vector3d angular = motion.tail<3>();
-    columns.emplace_back(body.v_offset + j, sign * (motion.head<3>() + angular.cross(arm)));
-  }
+    columns.clear();
+    const ShapeInfo& shape = world_.shape(handle);
+    if (shape.body < 0)
+      return;
+    const Body& body = bodies_[shape.body];
+    addPointColumns(body, {shape.link, feature, point.position}, sign, columns);
+    for (auto& column : columns)
+      column.first += body.v_offset;
+  };
+  collect(point.shape_a, featureA(point.id), 1.0, columns_a_);
+  collect(point.shape_b, featureB(point.id), -1.0, columns_b_);
 }
 
 /** False when no coordinate moves the contact along its normal: then no normal force is determined, nor is any needed.
@@ -173,8 +174,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const ContactPoint& point = (*context.points)[index];
   const ShapeInfo& shape_a = world_.shape(point.shape_a);
   const ShapeInfo& shape_b = world_.shape(point.shape_b);
-  collectColumns(shape_a, point.position, 1.0, columns_a_);
-  collectColumns(shape_b, point.position, -1.0, columns_b_);
+  collectColumns(point);
   if (columns_a_.empty() && columns_b_.empty())
     return;
 
@@ -327,8 +327,7 @@ Eigen::Vector3d ContactRows::velocityOf(const ContactRow& row, const ContactPoin
     return solution.u.segment<3>(row.row);
   const ShapeInfo& shape_a = world_.shape(point.shape_a);
   const ShapeInfo& shape_b = world_.shape(point.shape_b);
-  collectColumns(shape_a, point.position, 1.0, columns_a_);
-  collectColumns(shape_b, point.position, -1.0, columns_b_);
+  collectColumns(point);
   const Eigen::Vector3d velocity = relativeVelocity(solution.v, prescribedVelocity(bodies_, shape_a, shape_b, point));
   return {solution.u[row.row], row.tangent_1.dot(velocity), row.tangent_2.dot(velocity)};
 }

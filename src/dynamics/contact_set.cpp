@@ -43,6 +43,7 @@ ContactSet::ContactSet(std::vector<Body>& bodies, CollisionWorld& world, const P
                        const std::vector<ContactState>& last)
   : bodies_(bodies), world_(world), pairs_(pairs), last_(last)
 {
+  surfaces_ = SurfaceContacts(bodies_, world_);
   for (const Body& body : bodies_)
     ahead_.emplace_back(body);
   speeds_.resize(bodies_.size());
@@ -63,14 +64,31 @@ double ContactSet::tolerance() const
 
 double ContactSet::sizeOf(const ContactPoint& point) const
 {
-  // A sphere of no radius is a point: what counts then is the link that it is a corner of.
+  // A node counts with the mesh about it; a sphere of no radius is a point: there the link that it is a corner of.
   const auto size = [this](int handle)
   {
     const double radius = world_.convexShape(handle).bounding_radius;
     const ShapeInfo& shape = world_.shape(handle);
-    return radius > 0.0 || shape.body < 0 ? radius : bodies_[static_cast<size_t>(shape.body)].model.sizes[shape.link];
+    if (shape.body < 0)
+      return radius;
+    const BodyModel& model = bodies_[static_cast<size_t>(shape.body)].model;
+    if (model.solid)
+      return model.solid->nodeDistance();
+    return radius > 0.0 ? radius : model.sizes[shape.link];
   };
   return std::min(size(point.shape_a), size(point.shape_b));
+}
+
+/** Within the margins of the bodies, at the poses set: those at q_m, or where the answer takes them. */
+const std::vector<ContactPoint>& ContactSet::detect(const std::vector<double>& margins, bool is_ahead)
+{
+  const std::vector<ContactPoint>& points = world_.detect(margins);
+  if (surfaces_.empty())
+    return points;
+  const auto data = [&](int body) -> const MultibodyData&
+  { return is_ahead ? ahead_[body].data : bodies_[body].middle; };
+  surfaces_.find(points, margins, data, detected_);
+  return detected_;
 }
 
 /** Of the points of a prescribed base [m/s]. */
@@ -102,7 +120,18 @@ double ContactSet::normalSpeed(const ContactPoint& point, Motion motion) const
     if (shape.body < 0)
       continue;
     const Body& body = bodies_[shape.body];
-    double along = alongNormal(body, shape.link, point.position, point.normal, velocities(motion, shape.body));
+    const Eigen::VectorXd& v = velocities(motion, shape.body);
+    double along = 0.0;
+    if (body.model.solid)
+    {
+      columns_.clear();
+      addPointColumns(body, {shape.link, side == 0 ? featureA(point.id) : featureB(point.id), point.position}, 1.0,
+                      columns_);
+      for (const auto& [column, direction] : columns_)
+        along += v[column] * point.normal.dot(direction);
+    }
+    else
+      along = alongNormal(body, shape.link, point.position, point.normal, v);
     if (body.model.base_motion.active)
       along += point.normal.dot(baseVelocity(bodies_, shape, point.position));
     speed += side == 0 ? along : -along;
@@ -127,7 +156,7 @@ void ContactSet::detectAtMiddle(const StepContext& context)
     margins_[b] = MINIMUM_MARGIN + 2.0 * context.dt * speeds_[b];
     world_.setPoses(static_cast<int>(b), bodies_[b].middle);
   }
-  for (const ContactPoint& point : world_.detect(margins_))
+  for (const ContactPoint& point : detect(margins_, false))
     candidates_.push_back({point});
   sortCandidates();
 }
@@ -168,7 +197,7 @@ const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
       carried_.push_back(contact.id);
   std::sort(carried_.begin(), carried_.end());
   for (size_t b = 0; b < bodies_.size(); ++b)
-    speeds_[b] = (bodies_[b].model.tree.nv > 0 ? bodies_[b].speed : 0.0) + baseSpeed(bodies_[b]);
+    speeds_[b] = (bodies_[b].model.nv > 0 ? bodies_[b].speed : 0.0) + baseSpeed(bodies_[b]);
   candidates_.clear();
   detectAtMiddle(context);
   for (Candidate& candidate : candidates_)
@@ -204,7 +233,7 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
   if (!changed)
   {
     moveAhead(context);
-    if (!context.impact)
+    if (!context.impact && context.regime == Regime::DYNAMIC)  // else both poses are one
     {
       setPosesAhead(context, true);
       changed = mend(context, 0.5);
@@ -247,7 +276,7 @@ bool ContactSet::setAnswer(const StepContext& context, const Eigen::VectorXd& v)
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     Body& body = bodies_[b];
-    const int nv = body.model.tree.nv;
+    const int nv = body.model.nv;
     ahead_[b].v = v.segment(body.v_offset, nv);
     speeds_[b] = (nv > 0 ? pointSpeed(body, ahead_[b].v) : 0.0) + baseSpeed(body);
     moves = moves || context.dt * speeds_[b] > STILL;

@@ -5,7 +5,6 @@
 
 #include "frictional_contact_sim/dynamics/assembly.h"
 #include "frictional_contact_sim/dynamics/free_link.h"
-#include "frictional_contact_sim/model/dynamics_algorithms.h"
 
 namespace frictional_contact_sim
 {
@@ -60,12 +59,11 @@ void StepAssembly::findLastActing(const StepContext& context)
 /** Body::v_free, its speeds, and bias at the first guess of the mean velocity. */
 void StepAssembly::predict(const StepContext& context, Body& body)
 {
-  const MultibodyModel& tree = body.model.tree;
-  const auto momentum = momentum_.segment(body.v_offset, tree.nv);
+  const auto momentum = momentum_.segment(body.v_offset, body.model.nv);
   const auto move = [&](Eigen::VectorXd& v)
   {
     v = momentum - context.dt * body.bias;
-    solveMassMatrix(tree, body.middle, v);
+    solveMass(body, v);
   };
   computeBias(body, body.v_start, context.gravity, body.bias);
   if (body.model.free_link)
@@ -93,8 +91,7 @@ void StepAssembly::predict(const StepContext& context, Body& body)
 /** How much the bias at the mean velocity of an answer misses, in units of what it may: Body::next_bias, change. */
 double StepAssembly::biasMiss(const StepContext& context, const Solution& solution, Body& body)
 {
-  const MultibodyModel& tree = body.model.tree;
-  const auto v = solution.v.segment(body.v_offset, tree.nv);
+  const auto v = solution.v.segment(body.v_offset, body.model.nv);
   const double tolerance = std::max(context.tolerance, BIAS_ROUND_OFF);
   // What rests has nothing to look at: velocities enter the bias as squares.
   const double fastest = std::max(body.v_start.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
@@ -105,9 +102,9 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
   body.change = context.dt * (body.next_bias - body.bias);
   if (body.change.isZero(0.0))
     return 0.0;
-  if (body.model.free_link && !factorizeMassMatrix(tree, body.implicit, body.middle))
+  if (body.model.free_link && !factorizeMass(body))
     return std::numeric_limits<double>::quiet_NaN();
-  solveMassMatrix(tree, body.middle, body.change);
+  solveMass(body, body.change);
   const double change = pointSpeed(body, body.change);
   if (change <= tolerance * body.speed_change)
     return 0.0;
@@ -115,7 +112,7 @@ double StepAssembly::biasMiss(const StepContext& context, const Solution& soluti
   body.change = v;
   double allowed = std::max(tolerance * body.speed_change, SPEED_ROUND_OFF * pointSpeed(body, body.change));
   body.change = context.dt * body.next_bias;
-  solveMassMatrix(tree, body.middle, body.change);
+  solveMass(body, body.change);
   allowed = std::max(allowed, tolerance * pointSpeed(body, body.change));
   return change <= allowed ? 0.0 : change / allowed;
 }
@@ -142,7 +139,7 @@ double StepAssembly::moveBias(const StepContext& context, const Solution& soluti
   findActing(solution);
   for (Body& body : bodies_)
   {
-    const int nv = body.model.tree.nv;
+    const int nv = body.model.nv;
     const bool free = nv > 0 && body.model.free_link && !acting_[body_of_[body.v_offset]];
     const double miss = nv == 0 ? 0.0 : free ? freeMiss(context, solution, body) : biasMiss(context, solution, body);
     if (!std::isfinite(miss))

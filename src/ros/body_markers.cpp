@@ -89,8 +89,43 @@ void BodyMarkers::add(int body, int link, const Geometry& geometry, const Eigen:
   }
 }
 
+/** A deformable body is its surface: triangles, or the outline of a plane body or bar. */
+void BodyMarkers::loadSurface(int body)
+{
+  const std::vector<Facet>& facets = simulator_.workspace(body).model.solid->facets();
+  const bool is_solid = !facets.empty() && facets.front().count == 3;
+  addMarker(body, 0, is_solid ? Marker::TRIANGLE_LIST : Marker::LINE_LIST, Eigen::Vector3d::Ones(),
+            Eigen::Isometry3d::Identity(), paletteColor(body));
+  Marker& marker = markers_.back();
+  marker.color.a = 1.0F;
+  if (!is_solid)
+    marker.scale.x = 0.1 * simulator_.workspace(body).model.solid->nodeDistance();
+}
+
+void BodyMarkers::fillSurface(int body, Marker& marker) const
+{
+  const MultibodyData& data = simulator_.data(body);
+  marker.points.clear();
+  for (const Facet& facet : simulator_.workspace(body).model.solid->facets())
+    for (int k = 0; k < facet.count; ++k)
+    {
+      const Eigen::Vector3d& node = data.link_pose[facet.links[k]].translation();
+      geometry_msgs::Point point;
+      point.x = node.x();
+      point.y = node.y();
+      point.z = node.z();
+      marker.points.push_back(point);
+    }
+  fillPose(Eigen::Isometry3d::Identity(), marker.pose);
+}
+
 void BodyMarkers::loadBody(int body)
 {
+  if (simulator_.workspace(body).model.solid)
+  {
+    loadSurface(body);
+    return;
+  }
   const MultibodyModel& model = simulator_.model(body);
   const BodyDocument document = bodyDocument(simulator_.scenario().bodies[body]);
   std::set<int> drawn;  // frames
@@ -143,7 +178,10 @@ void BodyMarkers::append(const ros::Time& stamp, double size, visualization_msgs
     const Shape& shape = shapes_[i];
     const Eigen::Isometry3d pose =
         shape.body < 0 ? shape.placement : simulator_.data(shape.body).link_pose[shape.link] * shape.placement;
-    fillPose(pose, markers_[i].pose);
+    if (shape.body >= 0 && simulator_.workspace(shape.body).model.solid)
+      fillSurface(shape.body, markers_[i]);
+    else
+      fillPose(pose, markers_[i].pose);
     markers_[i].header.stamp = stamp;
   }
   message.markers.insert(message.markers.end(), markers_.begin(), markers_.end());

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "elastic_loading.h"
 #include "frictional_contact_sim/config/nearest_name.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
@@ -141,9 +142,9 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
   if (floating)
     fail(model.name, "motion is for a fixed base, but its base is floating");
   // What hangs on its joints would feel the acceleration.
-  if (model.tree.nv > 0 && (spec.motion->isProgram() || !spec.motion->velocity.angular.isZero()))
+  if (model.nv > 0 && (spec.motion->isProgram() || !spec.motion->velocity.angular.isZero()))
     fail(model.name, std::string("motion") + (spec.motion->isProgram() ? " over time" : ".angular") +
-                         " is for a body without joints, this one has " + std::to_string(model.tree.nv));
+                         " is for a body without joints, this one has " + std::to_string(model.nv));
   body.model.base_motion = *spec.motion;
   body.model.base_motion.start = body.state.base_pose;
   if (spec.motion->isProgram())
@@ -275,6 +276,11 @@ void checkLinks(const BodySpec& spec, const BodyModel& model)
 
 void place(const BodySpec& spec, const Draft& body, WorldModel& world)
 {
+  if (spec.elastic)
+  {
+    placeElastic(spec, body, world);
+    return;
+  }
   checkLinks(spec, body.model);
   const int handle = addShapes(spec, body, world);  // bodies and handles count alike
   if (!spec.self_collision)
@@ -319,6 +325,8 @@ void atSource(const BodySpec& spec, const Load& load)
 
 BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
 {
+  if (spec.elastic)
+    return loadElastic(spec);
   LoadedModel loaded = spec.urdf_path.empty()
                            ? loadUrdf(spec.urdf_xml, "robot_description", spec.base, spec.min_joint_inertia)
                            : loadUrdfFile(spec.urdf_path, spec.base, spec.min_joint_inertia);
@@ -336,6 +344,11 @@ void setInitialState(const BodySpec& spec, const Draft& body, std::vector<std::s
       spec,
       [&]()
       {
+        if (spec.elastic)
+        {
+          setElasticState(spec, body);
+          return;
+        }
         setInitialJoints(spec, body, warnings);
         setInitialBase(spec, body);
         setSurfaces(spec, body);

@@ -63,6 +63,8 @@ void CsvRecorder::recordBodies(const Simulator& simulator) const
     bodies << "ground,,," << ground->height << '\n';
   for (const BodySpec& body : simulator.scenario().bodies)
   {
+    if (body.elastic)
+      continue;
     const BodyDocument document = bodyDocument(body);
     const std::string name = "bodies/" + body.name + ".urdf";
     std::ofstream urdf(folder_ + "/" + name);
@@ -101,10 +103,32 @@ void CsvRecorder::record(const Simulator& simulator, bool with_step)
                 << simulator.effort(body, static_cast<int>(j)) << '\n';
     }
   }
+  recordNodes(simulator);
   if (!with_step)
     return;
   recordContacts(simulator);
   recordReport(simulator.report());
+}
+
+/** Surface nodes of deformable bodies. */
+void CsvRecorder::recordNodes(const Simulator& simulator)
+{
+  for (int body = 0; body < simulator.bodyCount(); ++body)
+  {
+    if (!simulator.workspace(body).model.solid)
+      continue;
+    if (!nodes_.is_open())
+      nodes_ = open("nodes.csv", "time,body,node,x,y,z,vx,vy,vz");
+    const MultibodyData& data = simulator.data(body);
+    for (size_t link = 1; link < data.link_pose.size(); ++link)
+    {
+      const std::string& name = simulator.model(body).links[link].name;
+      nodes_ << simulator.time() << ',' << simulator.bodyName(body) << ',' << name.substr(name.find('_') + 1);
+      write(nodes_, data.link_pose[link].translation());
+      write(nodes_, data.link_velocity[link].head<3>());
+      nodes_ << '\n';
+    }
+  }
 }
 
 void CsvRecorder::recordContacts(const Simulator& simulator)
@@ -142,8 +166,10 @@ void CsvRecorder::recordReport(const StepSummary& report)
 
 void CsvRecorder::close()
 {
-  for (std::ofstream* file : {&states_, &joints_, &contacts_, &steps_})
+  for (std::ofstream* file : {&states_, &joints_, &contacts_, &steps_, &nodes_})
   {
+    if (!file->is_open())
+      continue;
     file->close();
     if (!*file)
       throw std::runtime_error(folder_ + ": writing failed, is the disk full?");

@@ -42,7 +42,7 @@ const MultibodyData& LinkForces::motion(int body)
   if (forces.motion_of != state_)
   {
     const Body& last = simulator_.workspace(body);
-    computeStepMotion(last, simulator_.solution().v.segment(last.v_offset, last.model.tree.nv), simulator_.report().dt,
+    computeStepMotion(last, simulator_.solution().v.segment(last.v_offset, last.model.nv), simulator_.report().dt,
                       forces.motion);
     forces.motion_of = state_;
   }

@@ -88,16 +88,16 @@ int Simulator::Impl::countIslands()
   {
     const int a = collision.shape(contact.shape_a).body;
     const int b = collision.shape(contact.shape_b).body;
-    if (a >= 0 && b >= 0 && bodies[a].model.tree.nv > 0 && bodies[b].model.tree.nv > 0)
+    if (a >= 0 && b >= 0 && bodies[a].model.nv > 0 && bodies[b].model.nv > 0)
       island_of.unite(a, b);
   }
   for (const std::vector<Closure>* closures : {&state.rows.loops, &state.rows.welds})
     for (const Closure& closure : *closures)
-      if (closure.body_b >= 0 && bodies[closure.body_a].model.tree.nv > 0 && bodies[closure.body_b].model.tree.nv > 0)
+      if (closure.body_b >= 0 && bodies[closure.body_a].model.nv > 0 && bodies[closure.body_b].model.nv > 0)
         island_of.unite(closure.body_a, closure.body_b);
   int islands = 0;
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b)
-    islands += bodies[b].model.tree.nv > 0 && island_of.root(b) == b;
+    islands += bodies[b].model.nv > 0 && island_of.root(b) == b;
   return islands;
 }
 

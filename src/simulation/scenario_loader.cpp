@@ -4,6 +4,7 @@
 #include <set>
 
 #include "frictional_contact_sim/config/yaml_config.h"
+#include "elastic_keys.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
 #include "loop_keys.h"
 
@@ -23,7 +24,13 @@ BodySpec readBody(const ConfigNode& node)
 {
   BodySpec body;
   body.source = node.place();
-  node.readMap(ConfigKeys{required(key("name", [&](const ConfigNode& name) { body.name = readName(name); })),
+  const ConfigKey name = required(key("name", [&](const ConfigNode& value) { body.name = readName(value); }));
+  if (node.has("elastic") || node.has("rod"))
+  {
+    node.readMap(ConfigKeys{name} + (node.has("rod") ? rodBodyKeys(body) : elasticBodyKeys(body)));
+    return body;
+  }
+  node.readMap(ConfigKeys{name,
                           required(key("urdf", [&](const ConfigNode& urdf) { body.urdf_path = resolveFile(urdf); })),
                           linkMaterialsKey("materials", body)} +
                bodyKeys(body));
@@ -41,26 +48,33 @@ void readBodies(const ConfigNode& node, Scenario& scenario)
   }
 }
 
-/** Keys of the format for what is not built yet. */
-ConfigKeys futureKeys()
+/** What a step is; see dynamics/regime.h. */
+ConfigKeys regimeKeys(Scenario& scenario)
 {
-  return {key(
-      "quasi_static",
-      [](const ConfigNode& node)
-      {
-        if (node.boolean())
-          node.fail("quasi-static problems are not built yet, expected false");
-      })};
+  const auto choose = [&scenario](Regime regime)
+  {
+    return [&scenario, regime](const ConfigNode& node)
+    {
+      if (!node.boolean())
+        return;
+      if (scenario.regime != Regime::DYNAMIC)
+        node.fail("found true beside quasi_static: true, expected one of them");
+      scenario.regime = regime;
+    };
+  };
+  return {key("quasi_static", choose(Regime::QUASI_STATIC)), key("static", choose(Regime::STATIC))};
 }
 
 Scenario readScenario(const ConfigNode& document)
 {
   Scenario scenario;
   scenario.name = document.stem();
-  document.readMap(numericKeys(scenario) + surroundingKeys(scenario) + futureKeys() +
+  document.readMap(numericKeys(scenario) + surroundingKeys(scenario) + regimeKeys(scenario) +
                    ConfigKeys{key("duration", scenario.duration, notNegative()),
                               key("bodies", [&](const ConfigNode& node) { readBodies(node, scenario); }),
                               key("loops", [&](const ConfigNode& node) { readLoops(node, scenario); })});
+  if (scenario.regime == Regime::STATIC)
+    scenario.duration = scenario.time_step;  // one equilibrium
   if (!document.has("bodies"))
     document.fail("has no bodies, expected a list of them under the key 'bodies'");
   const std::vector<ConfigNode> bodies = document.at("bodies").items("bodies");

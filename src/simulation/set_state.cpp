@@ -172,11 +172,7 @@ void Simulator::Impl::impactSolve()
 void Simulator::Impl::solveImpact()
 {
   for (Body& body : bodies)
-  {
-    body.middle.base_pose = body.state.base_pose;
-    forwardKinematics(body.model.tree, body.state.q, body.middle);
-    computeMassMatrix(body.model.tree, body.middle);
-  }
+    moveToImpact(body);
   assembly.begin(context);
   assembly.assembleForces(context);
   context.points = &contact_set.find(context);
@@ -225,7 +221,7 @@ void Simulator::Impl::finishImpact()
   const std::vector<char>& acting = assembly.acting(result.solution);
   for (size_t b = 0; b < bodies.size(); ++b)
     if (stands || acting[b] != 0)
-      bodies[b].state.v = result.solution.v.segment(bodies[b].v_offset, bodies[b].model.tree.nv);
+      bodies[b].state.v = result.solution.v.segment(bodies[b].v_offset, bodies[b].model.nv);
   updateEnds();
   bookEnergies();
   if (stands)

@@ -12,11 +12,18 @@
 
 namespace frictional_contact_sim
 {
+bool findsEquilibrium(const WorldModel& world)
+{
+  return world.scenario.regime == Regime::STATIC &&
+         std::none_of(world.bodies.begin(), world.bodies.end(), [](const BodyModel& body) { return body.solid; });
+}
+
 StepContext makeContext(const Scenario& scenario)
 {
   StepContext context;
   context.dt = scenario.time_step;
   context.gravity = scenario.gravity;
+  context.regime = scenario.regime;
   context.tolerance = scenario.stopping.tolerance;
   context.normal_law.form = scenario.contact_law;
   // An approach slower than what gravity gives in one step is rest, not an impact.
@@ -111,10 +118,10 @@ void Simulator::Impl::bookEnergies()
   state.energy.potential = 0.0;
   for (const Body& body : bodies)
   {
-    if (body.model.tree.nv == 0)
+    if (body.model.nv == 0)
       continue;
-    state.energy.kinetic += kineticEnergy(body.model.tree, body.end, body.state.v);
-    state.energy.potential += potentialEnergy(body.model.tree, body.end, context.gravity) + springEnergy(body);
+    state.energy.kinetic += kineticEnergy(body);
+    state.energy.potential += potentialEnergy(body, context.gravity);
   }
   report.energy = state.energy;
 }

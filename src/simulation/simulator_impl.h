@@ -18,6 +18,9 @@ namespace frictional_contact_sim
 /** What a step is told by a scenario. */
 StepContext makeContext(const Scenario& scenario);
 
+/** Statics of rigid bodies: whether forces balance the loads, in place of a step. */
+bool findsEquilibrium(const WorldModel& world);
+
 struct Simulator::Impl
 {
   explicit Impl(std::shared_ptr<const WorldModel> world_model);
@@ -30,6 +33,7 @@ struct Simulator::Impl
   // the step, in this order
   void moveToMidpoint();
   void solveStep();
+  void judgeEquilibrium();  ///< statics of rigid bodies: rest, or the proof that there is none
   void advance();
   void finishStep();
 

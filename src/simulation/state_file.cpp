@@ -121,11 +121,12 @@ void visitNames(StateArchive& archive, const Simulator& simulator)
   expect(archive, "number of bodies", simulator.bodyCount());
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
-    const MultibodyModel& tree = simulator.model(body);
+    const BodyModel& model = simulator.workspace(body).model;
+    const MultibodyModel& tree = model.tree;
     const std::string name = "body " + std::to_string(body);
     expect(archive, "name of " + name, simulator.bodyName(body));
-    expect(archive, "positions of " + name, tree.nq);
-    expect(archive, "velocities of " + name, tree.nv);
+    expect(archive, "positions of " + name, model.nq);
+    expect(archive, "velocities of " + name, model.nv);
     expect(archive, "joints of " + name, static_cast<int>(tree.joints.size()));
     for (const Joint& joint : tree.joints)
       expect(archive, "joint of " + name, joint.name);

@@ -2,15 +2,19 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <sstream>
 
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/problem/energy_check.h"
+#include "frictional_contact_sim/problem/residual.h"
+#include "frictional_contact_sim/solver/equilibrium.h"
 #include "simulator_impl.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
+constexpr double EQUILIBRIUM_ROUND_OFF = 1e-8;  ///< share of the loads that a balance may miss
 constexpr double GAP_ROUND_OFF = 1e-14;  ///< a resting contact is no deeper [m]
 /// Overlaps that could not be pushed out are left for so many steps, where they are shallower than what touches: else
 /// every step of a heap that wedges some would ask in vain.
@@ -19,6 +23,22 @@ constexpr double WEDGED_MARGIN = 2.0;  ///< for what the solver's tolerance adds
 /// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
+
+/** Why a solid's model does not hold where an answer takes it; empty where every one does. */
+std::string refusal(const std::vector<Body>& bodies, const Solution& solution, double dt)
+{
+  Eigen::VectorXd q;
+  Eigen::VectorXd v;
+  for (const Body& body : bodies)
+    if (body.model.solid)
+    {
+      q = v = body.state.q;
+      moveStep(body, solution.v.segment(body.v_offset, body.model.nv), dt, q, v);
+      if (std::string reason = body.model.solid->refusal(q); !reason.empty())
+        return reason;
+    }
+  return "";
+}
 
 /** Whether another round makes sense after a solve. */
 bool mayGoOn(SolverStatus status)
@@ -92,6 +112,11 @@ void Simulator::Impl::solveStep()
       assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
       assembly.assembleProblem(context);
     }
+    if (findsEquilibrium(*world))
+    {
+      judgeEquilibrium();
+      return;
+    }
     const bool pushes = pushesOut();
     const bool can_ask_less = pushes || contact_set.canGoBack();
     solver.solve(assembly.problem(), guess, !can_ask_less, pushes, result);
@@ -110,6 +135,45 @@ void Simulator::Impl::solveStep()
   if (again == Again::NEVER)
     setUnsatisfied();
   solver.takeLeastNorm(assembly.problem(), result);
+  if (result.status == SolverStatus::CONVERGED)
+    if (const std::string reason = refusal(bodies, result.solution, context.dt); !reason.empty())
+      fail(SolverStatus::NUMERICAL_FAILURE, reason);
+}
+
+/** Statics of rigid bodies, see solver/equilibrium.h: forces at rest, or the proof that there are none. */
+void Simulator::Impl::judgeEquilibrium()
+{
+  const IncrementalProblem& problem = assembly.problem();
+  Equilibrium found = findEquilibrium(problem, std::max(context.tolerance, EQUILIBRIUM_ROUND_OFF));
+  if (!found.exists)
+  {
+    size_t fastest = 0;
+    double speed = -1.0;
+    for (Body& body : bodies)
+    {
+      body.change = found.solution.v.segment(body.v_offset, body.model.nv);
+      if (const double own = body.model.nv > 0 ? pointSpeed(body, body.change) : 0.0; own > speed)
+      {
+        speed = own;
+        fastest = static_cast<size_t>(&body - bodies.data());
+      }
+    }
+    std::ostringstream message;
+    message << (found.is_proven ? "no equilibrium exists: no contact force opposes a motion on which the loads do work, "
+                                : "no equilibrium was found, nor a proof that there is none: ")
+            << "body '" << bodies[fastest].model.name << "' moves most, " << found.share
+            << " of the loads is not balanced";
+    fail(SolverStatus::STAGNATED, message.str());
+    return;
+  }
+  result = SolverResult();
+  result.solver = "equilibrium";
+  result.tried = {result.solver};
+  result.status = SolverStatus::CONVERGED;
+  result.iterations = found.iterations;
+  result.solution = found.solution;
+  result.residual = evaluateResidual(problem, result.solution).value();
+  result.law_errors.setZero(static_cast<Eigen::Index>(problem.laws.size()));
 }
 
 /** What rows are to push out at most [m] >= 0. */
@@ -186,7 +250,7 @@ void Simulator::Impl::take()
   assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)
   {
-    moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.tree.nv), context.dt);
+    moveToEnd(body, result.solution.v.segment(body.v_offset, body.model.nv), context.dt);
     removeExpiredWrenches(body, context.middle);
   }
   assembly.accept(context, {result.solution, result.law_errors});

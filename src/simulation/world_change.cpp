@@ -135,12 +135,12 @@ SimulationState carriedState(const SimulationState& from, SimulationState to, co
 EnergyLedger energyOf(const BodyModel& model, BodyState state, const Eigen::Vector3d& gravity)
 {
   EnergyLedger energy;
-  if (model.tree.nv == 0)
+  if (model.nv == 0)
     return energy;
   Body body(model, state);
   updateEnd(body);
-  energy.kinetic = kineticEnergy(model.tree, body.end, state.v);
-  energy.potential = potentialEnergy(model.tree, body.end, gravity) + springEnergy(body);
+  energy.kinetic = kineticEnergy(body);
+  energy.potential = potentialEnergy(body, gravity);
   return energy;
 }
 

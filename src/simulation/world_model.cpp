@@ -1,5 +1,6 @@
 #include "frictional_contact_sim/simulation/world_model.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -52,9 +53,24 @@ void checkScenario(const Scenario& scenario)
   scenario.stopping.validate();
 }
 
+/** What one equilibrium can be asked of. */
+void checkStatics(const WorldModel& world)
+{
+  if (world.scenario.regime != Regime::STATIC)
+    return;
+  const auto isSolid = [](const BodyModel& body) { return body.solid != nullptr; };
+  const bool has_solid = std::any_of(world.bodies.begin(), world.bodies.end(), isSolid);
+  for (const BodyModel& body : world.bodies)
+    if (has_solid && body.nv > 0 && (!body.solid || !body.solid->isSupported()))
+      throw std::invalid_argument("body '" + body.name +
+                                  "' moves freely beside an elastic body, expected bodies with supports alone in a "
+                                  "scenario that is static: quasi_static: true takes it");
+}
+
 void addDraft(const BodySpec& spec, WorldModel& world)
 {
   world.bodies.push_back(loadBody(spec, world.warnings));
+  world.bodies.back().setRegime(world.scenario.regime);
   world.start.emplace_back(world.bodies.back());
   setInitialState(spec, {world.bodies.back(), world.start.back()}, world.warnings);
 }
@@ -111,6 +127,7 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
     judgeInertia(*world, b);
   for (const std::string& line : findOverlaps(*world, world->collision))
     world->warnings.push_back(line + ": it is let out slowly");
+  checkStatics(*world);
   setPairs(*world);
   world->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return world;

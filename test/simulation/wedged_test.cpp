@@ -2,9 +2,9 @@
 // ask in vain every time.
 #include <gtest/gtest.h>
 
-#include "support/dice.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "scene.h"
+#include "support/dice.h"
 
 namespace frictional_contact_sim
 {

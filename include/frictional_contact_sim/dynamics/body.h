@@ -5,13 +5,16 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "frictional_contact_sim/dynamics/actuation.h"
 #include "frictional_contact_sim/dynamics/base_motion.h"
 #include "frictional_contact_sim/dynamics/command_schedule.h"
+#include "frictional_contact_sim/dynamics/dynamic_body.h"
 #include "frictional_contact_sim/dynamics/joint_trajectory.h"
+#include "frictional_contact_sim/dynamics/regime.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/model/multibody_data.h"
 #include "frictional_contact_sim/model/multibody_model.h"
@@ -29,10 +32,15 @@ struct JointSpring
 /** @brief The constant part, shared by all simulations of it. */
 struct BodyModel
 {
-  explicit BodyModel(MultibodyModel multibody_model);
+  /** @param mechanics of a body that is no tree: `multibody_model` then has its links and shapes, and no joint */
+  explicit BodyModel(MultibodyModel multibody_model, std::shared_ptr<const DynamicBody> mechanics = nullptr);
 
   std::string name;  ///< in the scenario
   MultibodyModel tree;
+  std::shared_ptr<const DynamicBody> solid;  ///< nullptr: a tree of rigid links
+  int nq;
+  int nv;  ///< of the tree, or of the solid
+  Regime regime = Regime::DYNAMIC;
   Eigen::VectorXd damping;  ///< nv, viscous joint damping [N m s/rad]
   std::vector<double> servo_inertia;  ///< joints: what a servo moves, at the initial position
   std::vector<std::vector<int>> chains;  ///< links: velocity coordinates that move it, ascending
@@ -50,6 +58,12 @@ struct BodyModel
   std::vector<CommandSchedule> schedules;  ///< joints: commands over time, empty where there is none
   bool gravity_compensation = false;  ///< servos also carry what hangs on their joints (servo_rows.h)
 
+  /** @brief Only in motion is a single link stepped about its centre of mass. */
+  void setRegime(Regime steps)
+  {
+    regime = steps;
+    free_link = free_link && steps == Regime::DYNAMIC;
+  }
   /** @brief What meshes add to extents, sizes and reach: CollisionWorld::meshReach. Until then they count as nothing.
    */
   void setMeshReach(const std::vector<double>& mesh_reach);
@@ -109,6 +123,7 @@ struct Body
   Eigen::Matrix3d base_turn;  ///< of a moving base: with the arm from its origin what base.angular adds to a point
   std::vector<Eigen::Matrix3d> surface_turns;  ///< BodyModel::surfaces: the same, axes of the link
   BaseVelocity base_rate;  ///< its change [m/s^2], [rad/s^2], mean over the step
+  std::unique_ptr<BodyWork> work;  ///< of a solid
   double base_time = 0.0;  ///< of the state, on the scenario's clock [s]
 };
 
@@ -140,6 +155,25 @@ void setStartVelocity(Body& body, bool impact);
 
 /** @brief State, base and `body.end` at the end of the step. @param v nv, the answer */
 void moveToEnd(Body& body, const VectorIn& v, double dt);
+
+/** @brief Poses of `data` at q, its base_pose set. */
+void setPoses(const BodyModel& model, const Eigen::VectorXd& q, MultibodyData& data);
+
+/** @brief Poses and mass matrix of `body.middle` at the state itself, for an impact. */
+void moveToImpact(Body& body);
+
+/** @brief Factor of the mass matrix of the step, Body::implicit on its diagonal. @return false where not positive
+ * definite */
+bool factorizeMass(Body& body);
+/** @brief v <- M^-1 v, after factorizeMass. */
+void solveMass(const Body& body, Eigen::VectorXd& v);
+
+/** @brief sign times the columns of a point's velocity, without the body's offset; appends to `columns`. */
+void addPointColumns(const Body& body, const BodyPoint& point, double sign, PointColumns& columns);
+
+/** @brief [J], of `body.end`. Solids: in the frame of their base. */
+double kineticEnergy(const Body& body);
+double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity);  ///< springs too [J]
 
 /** @brief Bias forces (nv) at mean velocity `v` of the step, in the problem's columns. Writes middle.link_velocity. */
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias);

@@ -18,9 +18,6 @@
 
 namespace frictional_contact_sim
 {
-/** @brief Columns of a point velocity: coordinate and the motion that it gives the point, coordinates ascend. */
-using PointColumns = std::vector<std::pair<int, Eigen::Vector3d>>;
-
 /** @brief The rows of one contact. */
 struct ContactRow
 {
@@ -64,8 +61,7 @@ public:
 
 private:
   void add(const StepContext& context, int index, RowSink& sink);
-  void collectColumns(const ShapeInfo& shape, const Eigen::Vector3d& position, double sign,
-                      PointColumns& columns) const;
+  void collectColumns(const ContactPoint& point);
   Eigen::Vector3d relativeVelocity(const Eigen::VectorXd& v, const Eigen::Vector3d& relative_base) const;
   bool movesAlong(const Eigen::Vector3d& normal) const;
   Eigen::Vector3d velocityOf(const ContactRow& row, const ContactPoint& point, const Solution& solution);

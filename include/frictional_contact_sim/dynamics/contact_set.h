@@ -36,6 +36,7 @@
 #include "frictional_contact_sim/dynamics/body.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/pair_table.h"
+#include "frictional_contact_sim/dynamics/surface_contacts.h"
 
 namespace frictional_contact_sim
 {
@@ -130,6 +131,7 @@ private:
   bool carriedBefore(const ContactId& id) const;
   double tolerance() const;
   double sizeOf(const ContactPoint& point) const;
+  const std::vector<ContactPoint>& detect(const std::vector<double>& margins, bool is_ahead);
   void detectAtMiddle(const StepContext& context);
   Candidate& insert(const Candidate& candidate);
   void sortCandidates();
@@ -149,6 +151,9 @@ private:
   CollisionWorld& world_;
   const PairTable& pairs_;
   const std::vector<ContactState>& last_;
+  SurfaceContacts surfaces_;  ///< of deformable bodies
+  std::vector<ContactPoint> detected_;  ///< with those, where there are any
+  mutable PointColumns columns_;  ///< scratch
   std::vector<ContactId> carried_;  ///< points with an impulse in the last step, sorted
   std::vector<Candidate> candidates_;  ///< ordered by id
   std::vector<Overlap> overlaps_;  ///< at the pose searched last

@@ -34,6 +34,8 @@ private:
 
   void load(double size);
   void loadBody(int body);
+  void loadSurface(int body);
+  void fillSurface(int body, visualization_msgs::Marker& marker) const;
   void add(int body, int link, const Geometry& geometry, const Eigen::Isometry3d& placement,
            const std_msgs::ColorRGBA& color);
   void addMarker(int body, int link, int type, const Eigen::Vector3d& scale, const Eigen::Isometry3d& placement,

@@ -2,7 +2,7 @@
 /**
  * @file csv_recorder.h
  * @brief Writes states.csv, joints.csv, contacts.csv and steps.csv of a run into a folder, and what its bodies look
- * like: bodies.csv and copies of their URDFs (docs/interfaces.md).
+ * like: bodies.csv and copies of their URDFs (docs/interfaces.md); nodes.csv of deformable bodies.
  *
  * Contact columns: force is impulse / dt in world axes, on body_a [N]; velocity is of a relative to b [m/s].
  */
@@ -26,6 +26,7 @@ public:
 
 private:
   void recordBodies(const Simulator& simulator) const;
+  void recordNodes(const Simulator& simulator);
   void recordContacts(const Simulator& simulator);
   void recordReport(const StepSummary& report);
   std::ofstream open(const std::string& name, const char* columns) const;
@@ -35,6 +36,7 @@ private:
   std::ofstream states_;
   std::ofstream joints_;
   std::ofstream contacts_;
+  std::ofstream nodes_;  ///< opened when a body is deformable
   std::ofstream steps_;
 };
 

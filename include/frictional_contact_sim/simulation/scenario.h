@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "frictional_contact_sim/dynamics/command_schedule.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/material.h"
+#include "frictional_contact_sim/dynamics/regime.h"
 #include "frictional_contact_sim/model/loop_joint.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "frictional_contact_sim/simulation/failure.h"
@@ -41,9 +43,12 @@ struct SpringSpec
   double damping = 0.0;  ///< besides the joint's own [N m s/rad] or [N s/m], >= 0
 };
 
+struct ElasticSpec;
+
 struct BodySpec
 {
   std::string name;
+  std::shared_ptr<const ElasticSpec> elastic;  ///< an elastic body in place of a URDF: deformable/elastic_spec.h
   std::string urdf_path;  ///< file, or empty when urdf_xml is given
   std::string urdf_xml;  ///< the document itself (robot_description)
   BaseType base = BaseType::AUTO;
@@ -105,6 +110,7 @@ struct Scenario
   std::optional<GroundSpec> ground;
   std::vector<BodySpec> bodies;
   std::vector<LoopSpec> loops;
+  Regime regime = Regime::DYNAMIC;
   FailureOptions failure;
   ContactLawForm contact_law = ContactLawForm::GAP;
   int certify_every = 0;  ///< steps between two verdicts on existence (step_certificate.h), 0: none
