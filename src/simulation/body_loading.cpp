@@ -144,7 +144,8 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
   // What hangs on its joints would feel the acceleration.
   if (model.nv > 0 && (spec.motion->isProgram() || !spec.motion->velocity.angular.isZero()))
     fail(model.name, std::string("motion") + (spec.motion->isProgram() ? " over time" : ".angular") +
-                         " is for a body without joints, this one has " + std::to_string(model.nv));
+                         " is for a body without joints, this one has " + std::to_string(model.nv) +
+                         ": weld a floating base to a body that moves (loops)");
   body.model.base_motion = *spec.motion;
   body.model.base_motion.start = body.state.base_pose;
   if (spec.motion->isProgram())
