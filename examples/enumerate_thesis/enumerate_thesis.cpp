@@ -1,9 +1,11 @@
 // The complete search as a library, on two problems of Cadoux (2009), section 1.4:
 //   enumerate_thesis rod [STEPS]       Painleve's rod over a grid, as CSV for scripts/plot_rod
 //   enumerate_thesis subset_sum K...   machines with K bars: solutions, nodes, seconds
+//   enumerate_thesis cuts K...         the same machines, and random planar problems of K contacts, with and without cuts
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <random>
 #include <string>
@@ -75,18 +77,30 @@ void printRods(int steps)
         }
 }
 
-/** Values of 1 to 50, the sum of a random half of them; and one more than all together, which no subset has. */
-void printMachine(int bars)
+struct Bars
 {
-  std::mt19937 engine(static_cast<unsigned>(bars));
   std::vector<int> values;
   int half = 0, all = 0;
-  for (int i = 0; i < bars; ++i)
+};
+
+/** Values of 1 to 50, the sum of a random half of them, and that of all. */
+Bars drawBars(int count)
+{
+  std::mt19937 engine(static_cast<unsigned>(count));
+  Bars bars;
+  for (int i = 0; i < count; ++i)
   {
-    values.push_back(1 + static_cast<int>(engine() % 50));
-    half += engine() % 2 == 0 ? values.back() : 0;
-    all += values.back();
+    bars.values.push_back(1 + static_cast<int>(engine() % 50));
+    bars.half += engine() % 2 == 0 ? bars.values.back() : 0;
+    bars.all += bars.values.back();
   }
+  return bars;
+}
+
+/** A total that subsets have; and one more than all together, which none has. */
+void printMachine(int bars)
+{
+  const auto [values, half, all] = drawBars(bars);
   std::vector<long> subsets(static_cast<size_t>(all) + 1, 0);
   subsets[0] = 1;
   for (const int value : values)
@@ -103,14 +117,92 @@ void printMachine(int bars)
     std::fflush(stdout);
   }
 }
+/** W = Z Z', half of full rank, numbers from -1 to 1. */
+fcs::DelassusProblem randomPlanar(int contacts, unsigned seed)
+{
+  std::mt19937 engine(seed);
+  const auto draw = [&engine] { return 2.0 * (engine() / 4294967296.0) - 1.0; };
+  Eigen::MatrixXd Z(2 * contacts, contacts);
+  fcs::DelassusProblem problem;
+  problem.q.resize(2 * contacts);
+  for (Eigen::Index i = 0; i < Z.rows(); ++i)
+  {
+    for (Eigen::Index j = 0; j < Z.cols(); ++j)
+      Z(i, j) = draw();
+    problem.q[i] = draw();
+  }
+  problem.laws.assign(static_cast<size_t>(contacts), {fcs::LawType::COULOMB_2D, 0.7});
+  problem.W.assign(Z * Z.transpose(), problem.laws);
+  return problem;
+}
+
+struct Policy
+{
+  const char* name;
+  fcs::EnumerationCuts cuts;
+  int depth, rounds;
+};
+constexpr Policy POLICIES[] = {{"none", fcs::EnumerationCuts::NONE, 0, 1},
+                               {"most violated, root, 20 rounds", fcs::EnumerationCuts::MOST_VIOLATED, 0, 20},
+                               {"deepest, root, 20 rounds", fcs::EnumerationCuts::DEEPEST, 0, 20},
+                               {"facets, root, 20 rounds", fcs::EnumerationCuts::FACETS, 0, 20},
+                               {"most violated, 3 laws deep", fcs::EnumerationCuts::MOST_VIOLATED, 3, 5},
+                               {"most violated, everywhere", fcs::EnumerationCuts::MOST_VIOLATED, 1000, 2},
+                               {"facets, everywhere", fcs::EnumerationCuts::FACETS, 1000, 2}};
+
+constexpr double TIME_LIMIT = 200.0;  ///< of one search [s]
+constexpr int CONTACTS_MOST = 10;  ///< of the random problems
+
+/** One line a policy, over some problems together. */
+template <typename Problem>
+void printCuts(const char* what, const std::vector<Problem>& problems)
+{
+  for (const Policy& policy : POLICIES)
+  {
+    fcs::EnumerateOptions options;
+    options.cuts = policy.cuts;
+    options.cut_depth = policy.depth;
+    options.cuts_per_node = policy.rounds;
+    options.max_nodes = 100000000;
+    options.time_limit = TIME_LIMIT;
+    long nodes = 0, cuts = 0, solutions = 0;
+    bool complete = true;
+    const std::clock_t start = std::clock();
+    for (const Problem& problem : problems)
+    {
+      const fcs::EnumerationReport report = fcs::enumerate(problem, options);
+      nodes += report.nodes;
+      cuts += report.cuts;
+      solutions += report.solutions;
+      complete = complete && report.complete;
+    }
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    std::printf("| %s | %s | %ld%s | %ld | %ld | %.3g |\n", what, policy.name, solutions,
+                complete ? "" : ", not complete", nodes, cuts, seconds);
+    std::fflush(stdout);
+  }
+}
+
+void printWithCuts(int size)
+{
+  const Bars bars = drawBars(size);
+  const std::string name = std::to_string(size);
+  printCuts((name + " bars, half").c_str(), std::vector<fcs::IncrementalProblem>{machine(bars.values, bars.half)});
+  printCuts((name + " bars, none").c_str(), std::vector<fcs::IncrementalProblem>{machine(bars.values, bars.all + 1)});
+  std::vector<fcs::DelassusProblem> problems;
+  for (unsigned seed = 0; seed < 10; ++seed)
+    problems.push_back(randomPlanar(size, seed));
+  if (size <= CONTACTS_MOST)
+    printCuts((name + " contacts, 10 draws").c_str(), problems);
+}
 }  // namespace
 
 int main(int argc, char** argv)
 {
   const std::string what = argc > 1 ? argv[1] : "";
-  if ((what != "rod" && what != "subset_sum") || (what == "subset_sum" && argc < 3))
+  if ((what != "rod" && what != "subset_sum" && what != "cuts") || (what != "rod" && argc < 3))
   {
-    std::fprintf(stderr, "usage: enumerate_thesis rod [STEPS] | subset_sum K...\n");
+    std::fprintf(stderr, "usage: enumerate_thesis rod [STEPS] | subset_sum K... | cuts K...\n");
     return 2;
   }
   try
@@ -119,7 +211,7 @@ int main(int argc, char** argv)
       printRods(argc > 2 ? std::stoi(argv[2]) : 40);
     else
       for (int i = 2; i < argc; ++i)
-        printMachine(std::stoi(argv[i]));
+        what == "cuts" ? printWithCuts(std::stoi(argv[i])) : printMachine(std::stoi(argv[i]));
   }
   catch (const std::exception& error)
   {

@@ -128,7 +128,7 @@ private:
     const double touching = support(disjunction_, direction).value;
     cut.row = basis_ * direction;
     cut.right_hand_side = cut.row.dot(result_.vertex) + touching;
-    cut.depth = -touching / direction.norm();
+    cut.depth = std::max(0.0, -touching / direction.norm());
     if (options_.check_facets)
       cut.face_dimension = faceDimension(disjunction_, direction);
     return cut;

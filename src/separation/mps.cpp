@@ -1,9 +1,12 @@
-// Integer programs as MPS files, by Clp (separation/integer_program.h).
-#include <coin/Clp_C_Interface.h>
-
+// Integer programs as MPS files, by the reader and writer of Clp (separation/integer_program.h).
 #include <algorithm>
 #include <cmath>
+#include <coin/CoinMessageHandler.hpp>
+#include <coin/CoinMpsIO.hpp>
+#include <coin/CoinPackedMatrix.hpp>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 
@@ -13,23 +16,31 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr double INFINITE = 1e30;  ///< Clp's bounds from here on do not bind
-constexpr int NAME_LENGTH = 1024;
+constexpr double INFINITE = 1e30;  ///< bounds from here on do not bind
 
-using ClpModel = std::unique_ptr<Clp_Simplex, void (*)(Clp_Simplex*)>;
-
-void sayNothing(Clp_Simplex*, int, int, const double*, int, const int*, int, char**)
+/** A reader whose messages go nowhere: it heeds no log level. */
+class Mps
 {
-}
+public:
+  Mps() : nowhere_(std::fopen("/dev/null", "w")), handler_(nowhere_)
+  {
+    io_.passInMessageHandler(&handler_);
+    io_.setInfinity(INFINITE);
+  }
+  ~Mps()
+  {
+    if (nowhere_ != nullptr)
+      std::fclose(nowhere_);
+  }
+  Mps(const Mps&) = delete;
+  Mps& operator=(const Mps&) = delete;
+  CoinMpsIO& io() { return io_; }
 
-/** The reader of MPS files heeds no log level. */
-ClpModel newModel()
-{
-  ClpModel model(Clp_newModel(), Clp_deleteModel);
-  Clp_setLogLevel(model.get(), 0);
-  Clp_registerCallBack(model.get(), sayNothing);
-  return model;
-}
+private:
+  FILE* nowhere_;
+  CoinMessageHandler handler_;
+  CoinMpsIO io_;
+};
 
 /** Rows of a file, sorted into inequalities and equations. */
 class RowSorter
@@ -76,59 +87,57 @@ private:
   Rows inequalities_, equations_;
 };
 
-Eigen::MatrixXd matrixOf(Clp_Simplex* clp)
+Eigen::MatrixXd matrixOf(const CoinMpsIO& io)
 {
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(Clp_numberRows(clp), Clp_numberColumns(clp));
-  const CoinBigIndex* starts = Clp_getVectorStarts(clp);
-  const int *lengths = Clp_getVectorLengths(clp), *rows = Clp_getIndices(clp);
-  const double* values = Clp_getElements(clp);
-  for (Eigen::Index j = 0; j < A.cols(); ++j)
-    for (CoinBigIndex k = starts[j]; k < starts[j] + lengths[j]; ++k)
-      A(rows[k], j) += values[k];
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(io.getNumRows(), io.getNumCols());
+  const CoinPackedMatrix& columns = *io.getMatrixByCol();
+  for (int j = 0; j < io.getNumCols(); ++j)
+    for (CoinBigIndex k = columns.getVectorFirst(j); k < columns.getVectorLast(j); ++k)
+      A(columns.getIndices()[k], j) += columns.getElements()[k];
   return A;
 }
-
-template <typename Read>
-std::string nameOf(const Read& read)
-{
-  std::vector<char> name(NAME_LENGTH, '\0');
-  read(name.data());
-  return name.data();
-}
 }  // namespace
+
+/** The reader prints a line about it on the standard output, and ignores it. */
+void refuseSense(const std::string& path)
+{
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line) && line.compare(0, 4, "ROWS") != 0)
+    if (line.compare(0, 8, "OBJSENSE") == 0)
+      throw std::invalid_argument(path + ": found a section OBJSENSE, expected none: the objective is minimised");
+}
 
 IntegerProgram readMps(const std::string& path)
 {
   if (!std::filesystem::is_regular_file(path))
     throw std::invalid_argument(path + (std::filesystem::exists(path) ? ": is a folder" : ": no such file") +
                                 ", expected an MPS file");
-  const ClpModel model = newModel();
-  Clp_Simplex* clp = model.get();
-  if (Clp_readMps(clp, path.c_str(), 1, 0) != 0 || Clp_numberColumns(clp) == 0)
+  refuseSense(path);
+  Mps mps;
+  CoinMpsIO& io = mps.io();
+  if (io.readMps(path.c_str(), "") != 0 || io.getNumCols() == 0)
     throw std::invalid_argument(path + ": cannot be read, expected an MPS file with one variable at least");
   IntegerProgram program;
-  const int n = Clp_numberColumns(clp), m = Clp_numberRows(clp);
-  program.name = nameOf([&](char* name) { Clp_problemName(clp, NAME_LENGTH, name); });
-  program.maximises = Clp_getObjSense(clp) < 0.0;
-  program.cost = (program.maximises ? -1.0 : 1.0) * Eigen::Map<const Eigen::VectorXd>(Clp_getObjCoefficients(clp), n);
-  program.offset = -Clp_objectiveOffset(clp);
-  const char* whole = Clp_integerInformation(clp);
+  const int n = io.getNumCols();
+  program.name = io.getProblemName();
+  program.cost = Eigen::Map<const Eigen::VectorXd>(io.getObjCoefficients(), n);
+  program.offset = -io.objectiveOffset();
   for (int j = 0; j < n; ++j)
   {
-    program.variables.push_back(nameOf([&](char* name) { Clp_columnName(clp, j, name); }));
-    program.whole.push_back(whole != nullptr && whole[j] != 0);
+    program.variables.emplace_back(io.columnName(j));
+    program.whole.push_back(io.isInteger(j));
   }
   if (std::count(program.whole.begin(), program.whole.end(), true) == 0)
     throw std::invalid_argument(path + ": has no integer variable, expected one at least");
   if (!program.cost.allFinite())
     throw std::invalid_argument(path + ": an objective coefficient is not finite");
-  const Eigen::MatrixXd A = matrixOf(clp);
+  const Eigen::MatrixXd A = matrixOf(io);
   RowSorter rows(path, n);
-  for (int i = 0; i < m; ++i)
-    rows.add(A.row(i).transpose(), Clp_getRowLower(clp)[i], Clp_getRowUpper(clp)[i],
-             "row " + nameOf([&](char* name) { Clp_rowName(clp, i, name); }));
+  for (int i = 0; i < io.getNumRows(); ++i)
+    rows.add(A.row(i).transpose(), io.getRowLower()[i], io.getRowUpper()[i], std::string("row ") + io.rowName(i));
   for (int j = 0; j < n; ++j)
-    rows.add(Eigen::VectorXd::Unit(n, j), Clp_getColLower(clp)[j], Clp_getColUpper(clp)[j],
+    rows.add(Eigen::VectorXd::Unit(n, j), io.getColLower()[j], io.getColUpper()[j],
              "variable " + program.variables[static_cast<size_t>(j)]);
   program.inequalities = rows.inequalities();
   program.equations = rows.equations();
@@ -137,13 +146,11 @@ IntegerProgram readMps(const std::string& path)
 
 void writeMps(const IntegerProgram& program, const std::string& path)
 {
-  const ClpModel model = newModel();
-  Clp_Simplex* clp = model.get();
-  const int n = program.size();
-  const std::vector<double> lower(static_cast<size_t>(n), -INFINITE), upper(static_cast<size_t>(n), INFINITE);
-  const Eigen::VectorXd cost = program.cost;
-  const std::vector<int> starts(static_cast<size_t>(n) + 1, 0);
-  Clp_addColumns(clp, n, lower.data(), upper.data(), cost.data(), starts.data(), nullptr, nullptr);
+  const int n = program.size(), m = program.inequalities.rows() + program.equations.rows();
+  const std::vector<double> least(static_cast<size_t>(n), -INFINITE), most(static_cast<size_t>(n), INFINITE);
+  std::vector<double> lower, upper;
+  CoinPackedMatrix matrix(false, 0.0, 0.0);
+  matrix.setDimensions(0, n);
   for (const Polyhedron* part : {&program.inequalities, &program.equations})
     for (int i = 0; i < part->rows(); ++i)
     {
@@ -155,16 +162,22 @@ void writeMps(const IntegerProgram& program, const std::string& path)
           columns.push_back(j);
           values.push_back(part->A(i, j));
         }
-      const double least = part == &program.equations ? part->b[i] : -INFINITE, most = part->b[i];
-      const int ends[2] = {0, static_cast<int>(columns.size())};
-      Clp_addRows(clp, 1, &least, &most, ends, columns.data(), values.data());
+      matrix.appendRow(static_cast<int>(columns.size()), columns.data(), values.data());
+      lower.push_back(part == &program.equations ? part->b[i] : -INFINITE);
+      upper.push_back(part->b[i]);
     }
-  std::vector<char> whole(static_cast<size_t>(n), 0);
-  for (size_t j = 0; j < whole.size(); ++j)
-    whole[j] = program.whole[j] ? 1 : 0;
-  Clp_copyInIntegerInformation(clp, whole.data());
-  Clp_setObjectiveOffset(clp, -program.offset);
-  if (Clp_writeMps(clp, path.c_str(), 1, 1, 1.0) != 0)
+  std::vector<char> whole(program.whole.begin(), program.whole.end());
+  std::vector<std::string> rows;
+  for (int i = 0; i < m; ++i)
+    rows.push_back("r" + std::to_string(i));
+  if (!std::ofstream(path))  // the writer throws what is no std::exception
+    throw std::runtime_error("cannot write " + path);
+  Mps mps;
+  mps.io().setMpsData(matrix, INFINITE, least.data(), most.data(), program.cost.data(), whole.data(), lower.data(),
+                      upper.data(), program.variables, rows);
+  mps.io().setProblemName(program.name.c_str());
+  mps.io().setObjectiveOffset(-program.offset);
+  if (mps.io().writeMps(path.c_str(), 0, 1, 1) != 0)
     throw std::runtime_error("cannot write " + path);
 }
 

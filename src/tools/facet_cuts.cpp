@@ -66,8 +66,9 @@ double relative(double gain, double deepest)
 
 long facetsAmong(const CutStudy& study)
 {
-  return std::count_if(study.facets.begin(), study.facets.end(), [&](const StudiedCut& cut)
-                       { return cut.face_dimension >= 0 && cut.face_dimension + 1 == study.dimension; });
+  return std::count_if(
+      study.facets.begin(), study.facets.end(), [&](const StudiedCut& cut)
+      { return !cut.is_ray && cut.face_dimension >= 0 && cut.face_dimension + 1 == study.dimension; });
 }
 
 Json toJson(const IntegerProgram& program, const CutStudy& study, double seconds)
@@ -180,7 +181,7 @@ void addStudyOptions(CLI::App& app, Arguments& arguments)
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_flag("--check-facets", arguments.study.check_facets,
-               "dimensions of the faces that the cuts expose: 2 n linear programs a cut");
+               "dimensions of the faces that the cuts expose, so which are facets: 2 n linear programs a cut");
   app.add_flag("--json", arguments.json, "one JSON object on one line");
 }
 }  // namespace

@@ -24,7 +24,7 @@ enum class DecompositionStart
 
 struct DecompositionOptions
 {
-  double bound_factor = 1.0;  ///< N = factor times that of the intersection cut [-]; 0: no bound, rays instead
+  double bound_factor = 0.0;  ///< N = factor times that of the intersection cut [-]; 0: no bound, rays instead
   DecompositionStart start = DecompositionStart::MOST_VIOLATED;
   NearestPointOptions nearest;
 };

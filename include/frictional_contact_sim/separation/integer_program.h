@@ -15,20 +15,24 @@ namespace frictional_contact_sim
 struct IntegerProgram
 {
   std::string name;
-  Eigen::VectorXd cost;  ///< c, to minimise; of a file that maximises its negative
+  Eigen::VectorXd cost;  ///< c, to minimise
   double offset = 0.0;  ///< of the objective
-  bool maximises = false;  ///< the file does; objective() has its sign
+  bool maximises = false;  ///< objective() has the other sign
   Polyhedron inequalities;  ///< bounds of the variables among them
   Polyhedron equations;  ///< E x = e
   std::vector<bool> whole;  ///< x_j must be
   std::vector<std::string> variables;
 
   int size() const { return static_cast<int>(cost.size()); }
-  /** @brief The objective as the file has it. */
+  /** @brief The objective as it is spoken of. */
   double objective(const Eigen::VectorXd& x) const { return (maximises ? -1.0 : 1.0) * cost.dot(x) + offset; }
 };
 
-/** @throws std::invalid_argument in one line: no such file, no MPS file, no integer variable */
+/**
+ * @brief By the reader of Clp: fixed or free format; a whole variable without bounds is 0 or 1, as MPS has it.
+ * @throws std::invalid_argument in one line: no such file, no MPS file, no integer variable, a
+ * section OBJSENSE
+ */
 IntegerProgram readMps(const std::string& path);
 /** @brief With all digits. @throws std::runtime_error when the file cannot be written */
 void writeMps(const IntegerProgram& program, const std::string& path);
