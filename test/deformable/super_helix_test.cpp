@@ -119,7 +119,7 @@ TEST(SuperHelixTest, ClampedStraightRodVibratesAsABeam)
   double error[2];
   for (int k = 0; k < 2; ++k)
   {
-    Scenario scenario = loadScenario("gravity: [0, 0, 0]\ntime_step: 0.0005\nbodies:\n" +
+    Scenario scenario = loadScenario("gravity: [0, 0, 0]\ntime_step: 0.0025\nbodies:\n" +
                                          rod("beam", "{xyz: [0, 0, 1]}", ", pieces: " + std::to_string(3 << k) + ", sections: 8"),
                                      "test");
     Simulator simulator(scenario);
@@ -135,7 +135,7 @@ TEST(SuperHelixTest, ClampedStraightRodVibratesAsABeam)
       ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
       const double now = simulator.position(0)[1];
       if (now * last < 0.0)
-        crossings.push_back(simulator.time() - 0.0005 * now / (now - last));
+        crossings.push_back(simulator.time() - 0.0025 * now / (now - last));
       last = now;
     }
     ASSERT_EQ(crossings.size(), 9u);
@@ -148,30 +148,31 @@ TEST(SuperHelixTest, ClampedStraightRodVibratesAsABeam)
 
 TEST(SuperHelixTest, SwingingRodKeepsItsEnergyToOrderTwo)
 {
-  // Rate terms of the acceleration: with a wrong one the energy drifts at order one, or not at all with dt.
+  // Rate terms of the acceleration: with a wrong one the energy drifts whatever dt is. Step and sections are halved
+  // together: the columns of a point are a quadrature of order two in the section.
   double worst[2];
   for (int k = 0; k < 2; ++k)
   {
-    const double dt = 5e-4 / (1 << k);
+    const double dt = 2.5e-4 / (1 << k);
     Scenario scenario = loadScenario("time_step: " + number(dt) + "\nbodies:\n" +
                                          rod("hair", "{xyz: [0, 0, 1]}",
-                                             ", pieces: 3, sections: 12, natural: [1, 2, 4], start: [2, 6, -6]"),
+                                             ", pieces: 3, natural: [1, 2, 4], start: [1.5, 3.5, 2], sections: " +
+                                                 std::to_string(12 << k)),
                                      "test");
     Simulator simulator(scenario);
     const double start = simulator.report().energy.kinetic + simulator.report().energy.potential;
     double largest = 0.0;
     worst[k] = 0.0;
-    while (simulator.time() < 0.2 - 0.5 * dt)
+    while (simulator.time() < 0.1 - 0.5 * dt)
     {
       ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
       const EnergyLedger& energy = simulator.report().energy;
       worst[k] = std::max(worst[k], std::abs(energy.kinetic + energy.potential - start));
       largest = std::max(largest, energy.kinetic);
     }
-    EXPECT_LT(worst[k], 0.02 * largest);
+    EXPECT_LT(worst[k], 0.06 * largest);
   }
-  // The quadrature's own share (order two in the section) stays when dt is halved.
-  EXPECT_LT(worst[1], 0.5 * worst[0]);
+  EXPECT_LT(worst[1], 0.4 * worst[0]);
 }
 
 TEST(SuperHelixTest, CantileverHangsAsTheBeamSays)
@@ -226,18 +227,21 @@ TEST(RodContactTest, RodsDrivenIntoEachOtherDoNotPass)
   // A soft rod falls over a stiffer one that lies across, others sway on a support that is shaken: nothing goes through.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> some(-1.0, 1.0);
+  int touched = 0;
   for (int run = 0; run < 4; ++run)
   {
+    const double curvature_1 = 2.0 * some(random);
+    const double curvature_2 = 2.0 * some(random);
+    const double beside = 0.02 * some(random);
     Scenario scenario = loadScenario(
         "time_step: 0.001\nmaterials: {default: {friction: 0.2}}\nbodies:\n" +
-            rod("falling", "{xyz: [-0.12, 0, 0.01]}",
-                ", damping: 0.01, natural: [0, " + number(2.0 * some(random)) + ", " + number(2.0 * some(random)) + "]") +
-            rod("across", "{xyz: [" + number(0.02 * some(random)) + ", -0.1, 0], rpy: [0, 0, 1.5707963]}",
+            rod("falling", "{xyz: [-0.12, 0, 0.03]}",
+                ", damping: 0.01, natural: [0, " + number(curvature_1) + ", " + number(curvature_2) + "]") +
+            rod("across", "{xyz: [" + number(beside) + ", -0.1, 0], rpy: [0, 0, 1.5707963]}",
                 ", damping: 0.01", "    motion: {type: sine, axis: [1, 0, 0], amplitude: 0.02, frequency: 3}\n"),
         "test");
     Simulator simulator(scenario);
     double least = 1.0;
-    int touched = 0;
     for (int step = 0; step < 300; ++step)
     {
       ASSERT_TRUE(simulator.step().converged()) << "run " << run << " step " << step << ": "
@@ -249,9 +253,9 @@ TEST(RodContactTest, RodsDrivenIntoEachOtherDoNotPass)
         EXPECT_GE(contact.cone_margin, -1e-9);
       }
     }
-    EXPECT_GT(touched, 20) << "run " << run;
     EXPECT_GT(least, 0.004 - 1e-6) << "run " << run << ": two radii of 2 mm";
   }
+  EXPECT_GT(touched, 50);
 }
 
 TEST(RodContactTest, HangingRodLiesOnTheGroundAndCarriesItsWeight)
