@@ -44,7 +44,7 @@ failure:
   fallback: true
   time_limit: 1
 materials:
-  default: {friction: 0.8, restitution: 0.1}
+  default: {friction: 0.8, restitution: 0.1, tangential_restitution: 0.2}
   rubber: {friction: 1.2}
   pairs:
     - {between: [rubber, default], friction: 0.9, restitution: 0.2}

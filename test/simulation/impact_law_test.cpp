@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "frictional_contact_sim/simulation/scenario_loader.h"
@@ -238,6 +241,55 @@ TEST_F(BallImpactTest, TheSmallerValueOfBothSidesCountsUnlessThePairHasItsOwn)
                   testing::AllOf(testing::HasSubstr("cell.yaml"), testing::HasSubstr("tangential_restitution"),
                                  testing::HasSubstr(value)));
     }
+}
+
+TEST(TangentialRestitutionTest, RandomBodiesKeepMomentumLedgerAndCones)
+{
+  for (std::uint32_t seed = 1; seed <= 12; ++seed)
+  {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Dice dice(seed);
+    const double friction = dice.uniform(0.1, 0.9);
+    Scenario scenario = spaceWith(friction, seed % 3 == 0 ? 0.0 : dice.uniform(0.0, 0.8));
+    scenario.materials.fallback.tangential_restitution = dice.uniform(0.1, 1.0);
+    scenario.stopping.tolerance = 1e-10;
+    for (int k = 0; k < 4; ++k)
+    {
+      const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.15) + dice.vector(0.05);
+      const double mass = dice.logUniform(0.1, 10.0);
+      BodySpec& body = addBody(scenario, "body" + std::to_string(k),
+                               k % 2 == 0 ? boxUrdf(size, mass) : sphereUrdf(size.x() / 2.0, mass), poseAt(0, 0, 0));
+      body.pose->translation() = 0.3 * Eigen::Vector3d(k % 2, k / 2, 0.1 * k);
+      body.linear_velocity = Eigen::Vector3d(0.15, 0.15, 0.0) - body.pose->translation() + dice.vector(0.1);
+      body.angular_velocity = dice.vector(4.0);
+    }
+    Simulator simulator(scenario);
+    const auto momentum = [&]
+    {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (int body = 0; body < simulator.bodyCount(); ++body)
+        sum += simulator.model(body).totalMass() * simulator.velocity(body).head<3>();
+      return sum;
+    };
+    const Eigen::Vector3d start = momentum();
+    const double energy = simulator.report().energy.kinetic;
+    int impacts = 0;
+    for (int step = 0; step < 600; ++step)
+    {
+      ASSERT_TRUE(simulator.step().converged()) << step << ": " << simulator.outcome().message;
+      for (const ContactState& contact : simulator.contacts())
+      {
+        const double normal = contact.normal.dot(contact.impulse);
+        const Eigen::Vector3d tangential = contact.impulse - normal * contact.normal;
+        ASSERT_GE(normal, 0.0);
+        ASSERT_LE(tangential.norm(), friction * normal * (1.0 + 1e-6) + 1e-12);
+        impacts += contact.mode == ContactMode::IMPACT ? 1 : 0;
+      }
+    }
+    EXPECT_GT(impacts, 0);
+    EXPECT_LT((momentum() - start).norm(), 1e-11 * (1.0 + start.norm()));
+    EXPECT_LT(std::abs(simulator.report().energy.balance_error), 1e-11 * energy);
+  }
 }
 
 /** Deepest penetration and height between the first two bounces of a ball dropped from half a metre. */
