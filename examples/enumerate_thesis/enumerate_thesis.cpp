@@ -1,7 +1,8 @@
 // The complete search as a library, on two problems of Cadoux (2009), section 1.4:
 //   enumerate_thesis rod [STEPS]       Painleve's rod over a grid, as CSV for scripts/plot_rod
 //   enumerate_thesis subset_sum K...   machines with K bars: solutions, nodes, seconds
-//   enumerate_thesis cuts K...         the same machines, and random planar problems of K contacts, with and without cuts
+//   enumerate_thesis cuts K...         the same machines, and random planar problems of K contacts, with and without
+//   cuts
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -14,8 +14,8 @@ namespace
 constexpr double ACTIVE = 1e-9;
 
 /**
- * Columns nu <= 0, then u_k of every term, then (norms of d only) d = p - q with p, q >= 0. Rows A_0^T u_0 = A_k^T u_k and
- * b_k.u_k - nu = 0 or <= 0.
+ * Columns nu <= 0, then u_k of every term, then (norms of d only) d = p - q with p, q >= 0. Rows A_0^T u_0 = A_k^T u_k
+ * and b_k.u_k - nu = 0 or <= 0.
  */
 class CutProgram
 {

@@ -46,9 +46,9 @@ public:
       return;
     basis_ = nullSpace(program_.equations, program_.size());
     const double x = result_.vertex[result_.variable];
-    Disjunction split = splitDisjunction(localRelaxation(program_, result_.vertex, basis_),
-                                         basis_.row(result_.variable).transpose(), std::floor(x) - x,
-                                         std::floor(x) + 1.0 - x);
+    Disjunction split =
+        splitDisjunction(localRelaxation(program_, result_.vertex, basis_), basis_.row(result_.variable).transpose(),
+                         std::floor(x) - x, std::floor(x) + 1.0 - x);
     disjunction_ = withoutEmptyTerms(split);
     if (disjunction_.terms.empty())
     {
@@ -66,7 +66,7 @@ private:
     if (relaxed.status != LinearProgramStatus::OPTIMAL)
     {
       const bool infeasible = relaxed.status == LinearProgramStatus::INFEASIBLE;
-      result_.status = infeasible                                        ? StudyStatus::INFEASIBLE
+      result_.status = infeasible                                         ? StudyStatus::INFEASIBLE
                        : relaxed.status == LinearProgramStatus::UNBOUNDED ? StudyStatus::UNBOUNDED
                                                                           : StudyStatus::FAILED;
       result_.message = infeasible ? "the relaxation is infeasible" : "the relaxation has no optimum";
@@ -85,9 +85,9 @@ private:
     const FacetDecomposition decomposition = decomposeDeepestCut(disjunction_, options_.decomposition);
     if (decomposition.status != NearestPointStatus::CONVERGED)
     {
-      result_.message = decomposition.message.empty() ? "algorithm 7.1 did not converge, gap " +
-                                                            std::to_string(decomposition.gap)
-                                                      : decomposition.message;
+      result_.message = decomposition.message.empty()
+                            ? "algorithm 7.1 did not converge, gap " + std::to_string(decomposition.gap)
+                            : decomposition.message;
       return;
     }
     Normalisation normalisation = options_.normalisation;

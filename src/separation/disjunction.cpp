@@ -123,9 +123,9 @@ Disjunction splitDisjunction(const Polyhedron& relaxation, const Eigen::VectorXd
   if (!(pi_0 < 0.0 && pi_1 > 0.0))
     throw std::invalid_argument("split: pi_0 is " + std::to_string(pi_0) + ", pi_1 " + std::to_string(pi_1) +
                                 ", expected pi_0 < 0 < pi_1");
-  Disjunction split = {relaxation,
-                       {{pi.transpose(), Eigen::VectorXd::Constant(1, pi_0)},
-                        {-pi.transpose(), Eigen::VectorXd::Constant(1, -pi_1)}}};
+  Disjunction split = {
+      relaxation,
+      {{pi.transpose(), Eigen::VectorXd::Constant(1, pi_0)}, {-pi.transpose(), Eigen::VectorXd::Constant(1, -pi_1)}}};
   validate(split);
   return split;
 }

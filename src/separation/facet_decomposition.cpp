@@ -44,7 +44,8 @@ public:
   /** Of a point that was returned; none: of the start. */
   const Record* find(const Eigen::VectorXd& value) const
   {
-    const auto found = std::find_if(records_.begin(), records_.end(), [&](const Record& r) { return r.value == value; });
+    const auto found =
+        std::find_if(records_.begin(), records_.end(), [&](const Record& r) { return r.value == value; });
     return found == records_.end() ? nullptr : &*found;
   }
   int calls() const { return calls_; }
@@ -113,9 +114,8 @@ FacetDecomposition decomposeDeepestCut(const Disjunction& disjunction, const Dec
     first = recording(-pointWithin(disjunction, violated.direction));
   if (first.status != OracleStatus::FOUND)
     return failed("the oracle has no point to start from");
-  const NearestPoint nearest =
-      nearestPoint(std::ref(recording), first.generator.is_ray ? violated.direction : first.generator.value,
-                   options.nearest);
+  const NearestPoint nearest = nearestPoint(
+      std::ref(recording), first.generator.is_ray ? violated.direction : first.generator.value, options.nearest);
   FacetDecomposition result;
   result.status = nearest.status;
   result.deepest = nearest.point;

@@ -22,8 +22,7 @@ IntegerProgram randomIntegerProgram(int variables, int constraints, std::uint64_
   std::mt19937_64 engine(seed);
   const auto draw = [&] { return 1.0 + static_cast<double>(engine() % 100); };
   IntegerProgram program;
-  program.name =
-      "n" + std::to_string(variables) + "-m" + std::to_string(constraints) + "-s" + std::to_string(seed);
+  program.name = "n" + std::to_string(variables) + "-m" + std::to_string(constraints) + "-s" + std::to_string(seed);
   program.maximises = true;
   program.cost.resize(variables);
   program.inequalities.A.setZero(constraints + variables, variables);
@@ -51,8 +50,7 @@ RelaxedSolution solveRelaxation(const IntegerProgram& program, const Polyhedron&
   // Costs of order one: tolerances are absolute.
   const double size = program.cost.size() == 0 ? 0.0 : program.cost.lpNorm<Eigen::Infinity>();
   for (int j = 0; j < program.size(); ++j)
-    relaxation.addColumn(-LinearProgram::INFINITE, LinearProgram::INFINITE,
-                         size > 0.0 ? program.cost[j] / size : 0.0);
+    relaxation.addColumn(-LinearProgram::INFINITE, LinearProgram::INFINITE, size > 0.0 ? program.cost[j] / size : 0.0);
   for (const Polyhedron* part : {&program.inequalities, &program.equations, &cuts})
   {
     const Polyhedron unit = withUnitRows(*part);

@@ -23,12 +23,12 @@ public:
 
   bool has(const Generator& candidate) const
   {
-    return std::any_of(generators_.begin(), generators_.end(),
-                       [&](const Generator& own)
-                       {
-                         return own.is_ray == candidate.is_ray &&
-                                (own.value - candidate.value).norm() <= SAME * candidate.value.norm();
-                       });
+    return std::any_of(
+        generators_.begin(), generators_.end(),
+        [&](const Generator& own) {
+          return own.is_ray == candidate.is_ray &&
+                 (own.value - candidate.value).norm() <= SAME * candidate.value.norm();
+        });
   }
 
   explicit Corral(const Eigen::VectorXd& first) : generators_{{first, false}}, weights_{1.0}, x_(first) {}
@@ -162,8 +162,7 @@ NearestPoint nearestPoint(const LinearOracle& oracle, const Eigen::VectorXd& fir
     if (result.gap <= options.tolerance * unit || corral.has(generator) || !next.join(generator) ||
         !(next.point().norm() < norm))
     {
-      result.status =
-          result.gap <= ROUND_OFF * unit ? NearestPointStatus::CONVERGED : NearestPointStatus::STALLED;
+      result.status = result.gap <= ROUND_OFF * unit ? NearestPointStatus::CONVERGED : NearestPointStatus::STALLED;
       break;
     }
     corral = std::move(next);

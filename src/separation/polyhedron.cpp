@@ -61,7 +61,8 @@ Eigen::MatrixXd normalConeMultipliers(const Eigen::VectorXd& b)
     if (b[i] != 0.0)
       (b[i] < 0.0 ? negative : positive).push_back(i);
   const Eigen::Index single = b.size() - static_cast<Eigen::Index>(positive.size());
-  Eigen::MatrixXd E = Eigen::MatrixXd::Zero(b.size(), single + static_cast<Eigen::Index>(negative.size() * positive.size()));
+  Eigen::MatrixXd E =
+      Eigen::MatrixXd::Zero(b.size(), single + static_cast<Eigen::Index>(negative.size() * positive.size()));
   Eigen::Index column = 0;
   for (Eigen::Index i = 0; i < b.size(); ++i)
     if (b[i] <= 0.0)

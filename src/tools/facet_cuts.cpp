@@ -23,7 +23,7 @@ struct Arguments
   int variables = 20;
   int constraints = 0;
   std::uint64_t seed = 0;
-  std::string write;
+  std::string output;
   StudyOptions study;
   bool json = false;
 };
@@ -34,7 +34,8 @@ const std::vector<std::pair<std::string, Normalisation>> NORMALISATIONS = {
     {"one_norm", Normalisation::ONE_NORM},
     {"maximum_norm", Normalisation::MAXIMUM_NORM}};
 const std::vector<std::pair<std::string, DecompositionStart>> STARTS = {
-    {"most_violated", DecompositionStart::MOST_VIOLATED}, {"projection", DecompositionStart::PROJECTION}};
+    {"most_violated", DecompositionStart::MOST_VIOLATED},
+    {"projection", DecompositionStart::PROJECTION}};
 constexpr const char* STATUS[] = {"STUDIED", "WHOLE", "INFEASIBLE", "UNBOUNDED", "FAILED"};
 
 /** JSON has no infinity. */
@@ -50,9 +51,9 @@ Json toJson(const Eigen::VectorXd& x)
 
 Json toJson(const StudiedCut& cut)
 {
-  Json result = {{"row", toJson(cut.row)},       {"right_hand_side", cut.right_hand_side},
-                 {"depth", cut.depth},           {"weight", cut.weight},
-                 {"ray", cut.is_ray},            {"on_bound", cut.on_bound}};
+  Json result = {{"row", toJson(cut.row)}, {"right_hand_side", cut.right_hand_side},
+                 {"depth", cut.depth},     {"weight", cut.weight},
+                 {"ray", cut.is_ray},      {"on_bound", cut.on_bound}};
   if (cut.face_dimension >= 0)
     result["face_dimension"] = cut.face_dimension;
   return result;
@@ -67,7 +68,8 @@ double relative(double gain, double deepest)
 long facetsAmong(const CutStudy& study)
 {
   return std::count_if(
-      study.facets.begin(), study.facets.end(), [&](const StudiedCut& cut)
+      study.facets.begin(), study.facets.end(),
+      [&](const StudiedCut& cut)
       { return !cut.is_ray && cut.face_dimension >= 0 && cut.face_dimension + 1 == study.dimension; });
 }
 
@@ -99,8 +101,10 @@ Json toJson(const IntegerProgram& program, const CutStudy& study, double seconds
   result["cuts"] = study.facets.size();
   result["oracle_calls"] = study.calls;
   result["bound"] = study.bound;
-  result["on_bound"] = std::count_if(study.facets.begin(), study.facets.end(), [](const StudiedCut& cut) { return cut.on_bound; });
-  result["rays"] = std::count_if(study.facets.begin(), study.facets.end(), [](const StudiedCut& cut) { return cut.is_ray; });
+  result["on_bound"] = std::count_if(
+      study.facets.begin(), study.facets.end(), [](const StudiedCut& cut) { return cut.on_bound; });
+  result["rays"] =
+      std::count_if(study.facets.begin(), study.facets.end(), [](const StudiedCut& cut) { return cut.is_ray; });
   if (study.dimension >= 0)
   {
     result["dimension"] = study.dimension;
@@ -131,8 +135,9 @@ void print(const Json& result)
               value(result["deepest"]["depth"]), 100.0);
   std::printf("  %-22s %14.10g %12s %12.2f\n", (std::to_string(result["cuts"].get<int>()) + " facet cuts").c_str(),
               value(result["objective"]["facets"]), "", value(result["facets_gain_percent"]));
-  std::printf("  %d calls of the oracle, %d of the facet cuts extreme by the bound N = %.4g, %d rays", result["oracle_calls"].get<int>(),
-              result["on_bound"].get<int>(), value(result["bound"]), result["rays"].get<int>());
+  std::printf("  %d calls of the oracle, %d of the facet cuts extreme by the bound N = %.4g, %d rays",
+              result["oracle_calls"].get<int>(), result["on_bound"].get<int>(), value(result["bound"]),
+              result["rays"].get<int>());
   if (result.contains("facets"))
     std::printf(", %d facets by rank", result["facets"].get<int>());
   std::printf(", %.3g s\n", value(result["seconds"]));
@@ -148,8 +153,8 @@ int run(const Arguments& arguments, bool generate)
                                       arguments.constraints > 0 ? arguments.constraints : arguments.variables,
                                       arguments.seed)
                : readMps(arguments.file);
-  if (!arguments.write.empty())
-    writeMps(program, arguments.write);
+  if (!arguments.output.empty())
+    writeMps(program, arguments.output);
   std::optional<tools::ProgressBar> progress(std::in_place, 0);
   const double start = tools::threadSeconds();
   const CutStudy study = studyCuts(program, arguments.study);
@@ -169,8 +174,9 @@ void addStudyOptions(CLI::App& app, Arguments& arguments)
                  "N of (7.27) over that of the intersection cut; 0: no bound, rays of the reverse polar instead")
       ->check(CLI::Range(0.0, 1e12))
       ->capture_default_str();
-  app.add_option("--start", arguments.study.decomposition.start,
-                 "of algorithm 7.1: most_violated, or projection (the deepest cut first, by another way) (most_violated)")
+  app.add_option(
+         "--start", arguments.study.decomposition.start,
+         "of algorithm 7.1: most_violated, or projection (the deepest cut first, by another way) (most_violated)")
       ->transform(CLI::CheckedTransformer(STARTS))
       ->default_str("");
   app.add_option("--normalisation", arguments.study.normalisation,
@@ -197,20 +203,22 @@ int main(int argc, char** argv)
       "facet_cuts");
   app.add_option("FILE", arguments.file, "integer program (MPS), bounded by memory only: dense matrices");
   addStudyOptions(app, arguments);
-  CLI::App* generate = app.add_subcommand("generate", "max c.x, A x <= b, x >= 0 whole, entries uniform among 1 .. 100");
+  CLI::App* generate =
+      app.add_subcommand("generate", "max c.x, A x <= b, x >= 0 whole, entries uniform among 1 .. 100");
   generate->add_option("--variables", arguments.variables, "n")->check(CLI::Range(1, 2000))->capture_default_str();
   generate->add_option("--constraints", arguments.constraints, "m beside x >= 0; 0: as many as variables")
       ->check(CLI::Range(0, 4000))
       ->capture_default_str();
   generate->add_option("--seed", arguments.seed, "of the draw")->capture_default_str();
-  generate->add_option("--write", arguments.write, "the program as an MPS file");
+  generate->add_option("--output", arguments.output, "the program as an MPS file");
   addStudyOptions(*generate, arguments);
   return tools::runTool(app, argc, argv,
                         [&]
                         {
                           if (arguments.file.empty() == !generate->parsed())
-                            throw std::invalid_argument("FILE: found " + std::string(arguments.file.empty() ? "none" : "a file and generate") +
-                                                        ", expected an MPS file or the command generate");
+                            throw std::invalid_argument(
+                                "FILE: found " + std::string(arguments.file.empty() ? "none" : "a file and generate") +
+                                ", expected an MPS file or the command generate");
                           return run(arguments, generate->parsed());
                         });
 }

@@ -126,7 +126,7 @@ TEST(DisjunctionTest, FacesHaveTheDimensionOfTheirVertices)
     const std::vector<VectorXd> vertices = verticesOf(pair);
     for (int k = 0; k < 3; ++k)
     {
-      const VectorXd d = k == 0 ? VectorXd(VectorXd::Zero(pair.dimension()))
+      const VectorXd d = k == 0   ? VectorXd(VectorXd::Zero(pair.dimension()))
                          : k == 1 ? VectorXd(pair.terms[0].A.row(0).transpose())
                                   : randomVector(dice, pair.dimension());
       EXPECT_EQ(faceDimension(pair, d), faceRank(vertices, d)) << draw << ' ' << d.transpose();
@@ -311,7 +311,8 @@ TEST(MostViolatedCutTest, OfRemark718IsValidAndNoShallowerThanItsNormalisationAl
 
 TEST(DisjunctionTest, OneEmptySideLeavesTheOther)
 {
-  // 7.3.3: beyond x = 1/2 there is nothing; cuts by both terms are valid, without the empty one the deepest is x_1 <= -1/2.
+  // 7.3.3: beyond x = 1/2 there is nothing; cuts by both terms are valid, without the empty one the deepest is x_1 <=
+  // -1/2.
   Polyhedron box = {MatrixXd(4, 2), Eigen::Vector4d(0.0, 2.0, 1.0, 1.0)};
   box.A << 1, 0, -1, 0, 0, 1, 0, -1;
   const Disjunction split = splitDisjunction(box, Vector2d(1, 0), -0.5, 0.5);

@@ -109,8 +109,8 @@ TEST(NearestPointTest, Figure73DoesNotGoRoundForEver)
 
 TEST(NearestPointTest, ConvergesAsTheorem74Says)
 {
-  // |d_k+1|^2 <= |d_k|^2 - delta^2 / M, delta = |d - d_k|^2, M the largest |d_k+1 - d_k|^2; as |d_k| falls alone is seen,
-  // delta >= 0 is bounded from below by (|d_k| - |d|)^2.
+  // |d_k+1|^2 <= |d_k|^2 - delta^2 / M, delta = |d - d_k|^2, M the largest |d_k+1 - d_k|^2; as |d_k| falls alone is
+  // seen, delta >= 0 is bounded from below by (|d_k| - |d|)^2.
   Dice dice(4);
   for (int draw = 0; draw < 60; ++draw)
   {

@@ -42,8 +42,8 @@ TEST(PolyhedronTest, Example710ToTheDigit)
   const Polyhedron square = thesisSquare();
   const MatrixXd multipliers = normalConeMultipliers(square.b);
   ASSERT_EQ(multipliers.cols(), 4);
-  for (const Eigen::Vector4d& e : {Eigen::Vector4d(0, 1, 0, 0), Eigen::Vector4d(1, 1, 0, 0), Eigen::Vector4d(0, 1, 1, 0),
-                                   Eigen::Vector4d(0, 3, 0, 1)})
+  for (const Eigen::Vector4d& e : {Eigen::Vector4d(0, 1, 0, 0), Eigen::Vector4d(1, 1, 0, 0),
+                                   Eigen::Vector4d(0, 1, 1, 0), Eigen::Vector4d(0, 3, 0, 1)})
     EXPECT_TRUE(hasColumn(multipliers, e)) << e.transpose();
   const MatrixXd generators = normalConeGenerators(square);
   ASSERT_EQ(generators.cols(), 4);

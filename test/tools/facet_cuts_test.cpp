@@ -40,7 +40,8 @@ protected:
   fs::path folder_;
 };
 
-/// max y, y <= 3 x, y <= 3 (1 - x), x and y >= 0 whole: the relaxation's vertex (1/2, 3/2); the split of x leaves y = 0.
+/// max y, y <= 3 x, y <= 3 (1 - x), x and y >= 0 whole: the relaxation's vertex (1/2, 3/2); the split of x leaves y =
+/// 0.
 constexpr const char* TRIANGLE =
     "NAME triangle FREE\nROWS\n N obj\n L up\n L down\nCOLUMNS\n M1 'MARKER' 'INTORG'\n x up -3 down 3\n"
     " y obj -1 up 1\n y down 1\n M2 'MARKER' 'INTEND'\nRHS\n RHS down 3\nBOUNDS\n UP BND x 5\n UP BND y 5\nENDATA\n";
@@ -65,7 +66,7 @@ TEST_F(FacetCutsTest, TheTriangleIsCutToItsBase)
 TEST_F(FacetCutsTest, AGeneratedProgramIsTheSameFromItsFile)
 {
   const std::string path = (folder_ / "program.mps").string();
-  const nlohmann::json made = answer("generate --variables 9 --constraints 7 --seed 4 --write " + path);
+  const nlohmann::json made = answer("generate --variables 9 --constraints 7 --seed 4 --output " + path);
   const nlohmann::json read = answer(path);
   EXPECT_EQ(read["cuts"], made["cuts"]);
   EXPECT_NEAR(read["objective"]["facets"].get<double>(), -made["objective"]["facets"].get<double>(), 1e-6);
@@ -84,7 +85,7 @@ TEST_F(FacetCutsTest, BadInputIsOneLine)
   for (const std::string& arguments :
        {std::string(), good + " generate", file("bad.mps", "no program\n"), sense, file("real.mps", real),
         (folder_ / "none.mps").string(), folder_.string(), std::string("generate --variables 0"),
-        "generate --write " + (folder_ / "none" / "x.mps").string(), good + " --start nowhere"})
+        "generate --output " + (folder_ / "none" / "x.mps").string(), good + " --start nowhere"})
   {
     const CommandResult result = runTool("facet_cuts", arguments);
     EXPECT_EQ(result.code, 2) << arguments;

@@ -62,7 +62,8 @@ public:
    * the rows' do not meet. The sign is the simplex method's business; empty when there is none.
    */
   Eigen::VectorXd infeasibilityRay() const;
-  /** @brief A direction of the columns that proves UNBOUNDED: feasible for ever, cost falling; empty when there is none. */
+  /** @brief A direction of the columns that proves UNBOUNDED: feasible for ever, cost falling; empty when there is
+   * none. */
   Eigen::VectorXd unboundedRay() const;
   /** @brief c - A^T prices() of the last solve. */
   Eigen::VectorXd reducedCosts() const;

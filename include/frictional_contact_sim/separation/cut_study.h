@@ -1,13 +1,13 @@
 #pragma once
 /**
  * @file cut_study.h
- * @brief One round of cuts on an integer program, compared as in section 7.4: (i) the most violated cut, (ii) the deepest
- * one, (iii) the facet cuts that it is made of.
+ * @brief One round of cuts on an integer program, compared as in section 7.4: (i) the most violated cut, (ii) the
+ * deepest one, (iii) the facet cuts that it is made of.
  *
- * The split is x_j <= floor, x_j >= floor + 1 of the most fractional variable at the vertex of the relaxation; rows have
- * length one, the vertex is the origin, and with equations the space is their null space (lin Q, footnote of 7.3.1). A
- * cut is added with its right-hand side from the support function of the disjunction, so that it is valid whatever the
- * digits of its direction.
+ * The split is x_j <= floor, x_j >= floor + 1 of the most fractional variable at the vertex of the relaxation; rows
+ * have length one, the vertex is the origin, and with equations the space is their null space (lin Q, footnote
+ * of 7.3.1). A cut is added with its right-hand side from the support function of the disjunction, so that it is valid
+ * whatever the digits of its direction.
  *
  * Source: Cadoux (2009), sections 7.3.5, 7.4.
  */
@@ -53,7 +53,8 @@ struct CutStudy
   double relaxed = 0.0;  ///< cost of the relaxation (7.12)
   StudiedCut most_violated, deepest;
   std::vector<StudiedCut> facets;
-  double with_most_violated = 0.0, with_deepest = 0.0, with_facets = 0.0;  ///< cost with those cuts; infinite: none is left
+  double with_most_violated = 0.0, with_deepest = 0.0,
+         with_facets = 0.0;  ///< cost with those cuts; infinite: none is left
   int calls = 0;  ///< of the oracle
   double bound = 0.0;  ///< N of (7.27), 0: none
   double duality_error = 0.0;  ///< | |d| |q| - 1 |, q the projection on Q by itself (6.10)

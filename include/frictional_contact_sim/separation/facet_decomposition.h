@@ -3,9 +3,9 @@
  * @file facet_decomposition.h
  * @brief Algorithm 7.1 on a disjunctive polyhedron: the deepest cut (Euclidean) and the facet cuts that imply it.
  *
- * The origin is projected on Q^- by nearestPoint() with PolarOracle; d = sum a_i d_i is the deepest cut, and the d_i are
- * extreme points of Q^-, so facets of Q where it has full dimension (theorem 6.6), except those where the bound N of
- * (7.27) is active (`on_bound`) or which are rays.
+ * The origin is projected on Q^- by nearestPoint() with PolarOracle; d = sum a_i d_i is the deepest cut, and the d_i
+ * are extreme points of Q^-, so facets of Q where it has full dimension (theorem 6.6), except those where the bound N
+ * of (7.27) is active (`on_bound`) or which are rays.
  *
  * Source: Cadoux (2009), algorithm 7.1, sections 7.1.4, 7.3.
  */

@@ -38,8 +38,8 @@ IntegerProgram readMps(const std::string& path);
 void writeMps(const IntegerProgram& program, const std::string& path);
 
 /**
- * @brief A dense program like those of section 7.4, whose draw the thesis does not give: max c.x, A x <= b, x >= 0 whole,
- * a_ij and c_j uniform among 1 .. 100, b_i = sum over j of a_ij (x = (1, ..., 1) fulfils all).
+ * @brief A dense program like those of section 7.4, whose draw the thesis does not give: max c.x, A x <= b, x >= 0
+ * whole, a_ij and c_j uniform among 1 .. 100, b_i = sum over j of a_ij (x = (1, ..., 1) fulfils all).
  * @throws std::invalid_argument unless variables and constraints >= 1
  */
 IntegerProgram randomIntegerProgram(int variables, int constraints, std::uint64_t seed);

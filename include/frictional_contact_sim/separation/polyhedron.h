@@ -50,7 +50,8 @@ Eigen::MatrixXd normalConeGenerators(const Polyhedron& polyhedron);
 /** @brief P_i of (7.9) as columns: all extreme points of Q^-, and others where the description is not minimal. */
 Eigen::MatrixXd reversePolarPoints(const Polyhedron& polyhedron);
 
-/** @brief sup {d.x}: OPTIMAL with value and point; UNBOUNDED: point is a ray; INFEASIBLE: Q is empty, value -infinity. */
+/** @brief sup {d.x}: OPTIMAL with value and point; UNBOUNDED: point is a ray; INFEASIBLE: Q is empty, value -infinity.
+ */
 struct Support
 {
   LinearProgramStatus status = LinearProgramStatus::STOPPED;

@@ -8,8 +8,8 @@
  * point of Q^-. Lemma 6.15: with q the projection of the origin on Q and d that on Q^-, d = -q / |q|^2 (6.10), and
  * d.x <= -1 is the deepest cut, at the distance |q| = 1 / |d| from the origin.
  *
- * Theorem 6.11 is printed with the wrong signs: for x in Q and dual norm(d) <= 1 it is norm(x) >= -sigma_Q(d), and at the
- * optimum min norm(x) = max -sigma_Q(d).
+ * Theorem 6.11 is printed with the wrong signs: for x in Q and dual norm(d) <= 1 it is norm(x) >= -sigma_Q(d), and at
+ * the optimum min norm(x) = max -sigma_Q(d).
  *
  * Source: Cadoux (2009), sections 6.1, 6.2, 7.2.
  */
@@ -34,8 +34,8 @@ struct ReversePolar
 ReversePolar reversePolar(const Polyhedron& polyhedron, double tolerance = 1e-9);
 
 /**
- * @brief The deepest cut d from the generators of (7.10): with rays among result.generators the deepest cut is not implied by cuts that
- * expose facets alone (figure 7.2).
+ * @brief The deepest cut d from the generators of (7.10): with rays among result.generators the deepest cut is not
+ * implied by cuts that expose facets alone (figure 7.2).
  * @throws std::invalid_argument when the origin is in Q
  */
 NearestPoint deepestCut(const Polyhedron& polyhedron, const NearestPointOptions& options = {});

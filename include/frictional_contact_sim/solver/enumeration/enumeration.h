@@ -33,8 +33,8 @@
  * complete = false  a limit was reached or a node could be neither closed nor resolved; what is listed is still true.
  *
  * Cuts (off by default): where a complementarity of a law is violated at a node's point, the hull of both its sides is
- * cut off from the point, and the linear program solved again, up to cuts_per_node times (src/solver/enumeration/mode_cuts.h);
- * docs/facet_cuts.md says what they gain.
+ * cut off from the point, and the linear program solved again, up to cuts_per_node times
+ * (src/solver/enumeration/mode_cuts.h); docs/facet_cuts.md says what they gain.
  *
  * Islands are enumerated apart and multiplied. Multipliers of redundant BILATERAL rows (lambda) do not count as
  * solutions of their own. Worst case exponential in the number of laws: deciding solvability is NP-complete (Cadoux
