@@ -52,9 +52,8 @@ std::array<int, 3> facetOf(const ElasticMesh& mesh, const Cell& cell, int opposi
   if (count == 1)
     return facet;
   const Eigen::Vector3d edge = mesh.nodes[facet[1]] - mesh.nodes[facet[0]];
-  const Eigen::Vector3d normal =
-      count == 2 ? edge.cross(Eigen::Vector3d::UnitY())
-                 : Eigen::Vector3d(edge.cross(mesh.nodes[facet[2]] - mesh.nodes[facet[0]]));
+  const Eigen::Vector3d normal = count == 2 ? edge.cross(Eigen::Vector3d::UnitY())
+                                            : Eigen::Vector3d(edge.cross(mesh.nodes[facet[2]] - mesh.nodes[facet[0]]));
   if (normal.dot(mesh.nodes[cell[opposite]] - mesh.nodes[facet[0]]) > 0.0)
     std::swap(facet[0], facet[1]);
   return facet;
@@ -110,11 +109,12 @@ ElasticMesh boxMesh(const std::vector<double>& size, const std::vector<int>& cel
   ElasticMesh mesh;
   mesh.dimension = static_cast<int>(size.size());
   const bool is_plane = mesh.dimension == 2;
-  const std::array<int, 3> count = is_plane ? std::array<int, 3>{cells[0], 0, cells[1]}
-                                            : std::array<int, 3>{cells[0], cells[1], cells[2]};
+  const std::array<int, 3> count =
+      is_plane ? std::array<int, 3>{cells[0], 0, cells[1]} : std::array<int, 3>{cells[0], cells[1], cells[2]};
   const Eigen::Vector3d extent(size[0], is_plane ? 0.0 : size[1], size.back());
   const auto index = [&](int i, int j, int k) { return (k * (count[1] + 1) + j) * (count[0] + 1) + i; };
-  const auto share = [&](int axis, int i) { return count[axis] == 0 ? 0.0 : static_cast<double>(i) / count[axis] - 0.5; };
+  const auto share = [&](int axis, int i)
+  { return count[axis] == 0 ? 0.0 : static_cast<double>(i) / count[axis] - 0.5; };
   for (int k = 0; k <= count[2]; ++k)
     for (int j = 0; j <= count[1]; ++j)
       for (int i = 0; i <= count[0]; ++i)

@@ -205,8 +205,8 @@ private:
 
   void addElement(int type, const std::vector<int>& groups)
   {
-    const auto known = std::find_if(std::begin(TYPES), std::end(TYPES),
-                                    [type](const ElementType& one) { return one.number == type; });
+    const auto known =
+        std::find_if(std::begin(TYPES), std::end(TYPES), [type](const ElementType& one) { return one.number == type; });
     if (known == std::end(TYPES))
       fail("an element of type " + std::to_string(type),
            "points (15), lines (1), triangles (2) and tetrahedra (4) of first order");
@@ -292,8 +292,9 @@ private:
       for (Eigen::Vector3d& node : mesh.nodes)
       {
         if (node.z() != mesh.nodes.front().z() && &node != &mesh.nodes.front())
-          throw ModelError(path_ + ": found triangles that are not in a plane z = constant, expected a plane mesh or "
-                                   "tetrahedra");
+          throw ModelError(path_ +
+                           ": found triangles that are not in a plane z = constant, expected a plane mesh or "
+                           "tetrahedra");
       }
     if (mesh.dimension == 2)
       for (Eigen::Vector3d& node : mesh.nodes)

@@ -65,8 +65,8 @@ SparseRows readMatrixMarket(const std::string& path, Eigen::Index size)
     double value = 0.0;
     if (!next())
       fail(path, line, std::to_string(k) + " entries", std::to_string(count));
-    if (!(std::istringstream(text) >> row >> column >> value) || row < 1 || column < 1 || row > size ||
-        column > size || !std::isfinite(value))
+    if (!(std::istringstream(text) >> row >> column >> value) || row < 1 || column < 1 || row > size || column > size ||
+        !std::isfinite(value))
       fail(path, line, "'" + text + "'", "row, column, finite value");
     entries.emplace_back(row - 1, column - 1, value);
     if (is_symmetric && row != column)

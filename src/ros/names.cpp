@@ -27,6 +27,8 @@ void addJoints(const Simulator& simulator, int body, const NameRules& rules, Nam
   for (size_t i = 1; i < model.joints.size(); ++i)  // joint 0 is the base
   {
     const Joint& joint = model.joints[i];
+    if (joint.type == JointType::FIXED)  // nodes of a deformable body
+      continue;
     const std::string name = nameOf(rules, rules.joints, simulator.bodyName(body), joint.name);
     if (velocitySize(joint.type) != 1)
     {

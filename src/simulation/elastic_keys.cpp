@@ -62,19 +62,21 @@ ElasticSpec readElastic(const ConfigNode& node)
   ElasticSpec spec;
   ElasticMaterial& material = spec.material;
   const auto file = [](const char* name, std::string& path)
-  { return key(name, [&path](const ConfigNode& value) { path = resolveFile(value); }); };
-  node.readMap({key("box", [&](const ConfigNode& value) { spec.box = value.numbers(positive()); }),
-                key("bar", spec.bar, positive()),
-                key("cells", [&](const ConfigNode& value) { spec.cells = readCells(value); }),
-                file("mesh", spec.mesh), file("mass", spec.mass), file("stiffness", spec.stiffness),
-                file("nodes", spec.nodes), key("young_modulus", material.young_modulus, positive()),
-                key("poisson_ratio", material.poisson_ratio, between(0.0, 0.4999)),
-                key("density", material.density, positive()),
-                key("plane", material.plane,
-                    Choices<PlaneModel>{{"strain", PlaneModel::STRAIN}, {"stress", PlaneModel::STRESS}}),
-                key("thickness", material.thickness, positive()), key("area", material.area, positive()),
-                key("damping", spec.damping, notNegative()),
-                key("fixed", [&](const ConfigNode& value) { spec.fixed = value.texts(); })});
+  {
+    return key(
+        name, [&path](const ConfigNode& value) { path = resolveFile(value); });
+  };
+  node.readMap(
+      {key("box", [&](const ConfigNode& value) { spec.box = value.numbers(positive()); }),
+       key("bar", spec.bar, positive()), key("cells", [&](const ConfigNode& value) { spec.cells = readCells(value); }),
+       file("mesh", spec.mesh), file("mass", spec.mass), file("stiffness", spec.stiffness), file("nodes", spec.nodes),
+       key("young_modulus", material.young_modulus, positive()),
+       key("poisson_ratio", material.poisson_ratio, between(0.0, 0.4999)), key("density", material.density, positive()),
+       key("plane", material.plane,
+           Choices<PlaneModel>{{"strain", PlaneModel::STRAIN}, {"stress", PlaneModel::STRESS}}),
+       key("thickness", material.thickness, positive()), key("area", material.area, positive()),
+       key("damping", spec.damping, notNegative()),
+       key("fixed", [&](const ConfigNode& value) { spec.fixed = value.texts(); })});
   checkSource(node, spec);
   return spec;
 }
@@ -127,8 +129,7 @@ ConfigKeys rodBodyKeys(BodySpec& body)
 
 ConfigKeys elasticBodyKeys(BodySpec& body)
 {
-  ConfigKeys keys = {required(key("elastic",
-                                  [&body](const ConfigNode& node)
+  ConfigKeys keys = {required(key("elastic", [&body](const ConfigNode& node)
                                   { body.elastic = std::make_shared<ElasticSpec>(readElastic(node)); }))};
   return keys + sharedKeys(body, {"pose", "velocity", "wrenches", "motion", "material"});
 }

@@ -3,8 +3,8 @@
 #include <regex>
 #include <set>
 
-#include "frictional_contact_sim/config/yaml_config.h"
 #include "elastic_keys.h"
+#include "frictional_contact_sim/config/yaml_config.h"
 #include "frictional_contact_sim/simulation/scenario_keys.h"
 #include "loop_keys.h"
 

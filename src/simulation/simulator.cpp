@@ -15,7 +15,8 @@ namespace frictional_contact_sim
 bool findsEquilibrium(const WorldModel& world)
 {
   return world.scenario.regime == Regime::STATIC &&
-         std::none_of(world.bodies.begin(), world.bodies.end(), [](const BodyModel& body) { return body.solid; });
+         std::none_of(
+             world.bodies.begin(), world.bodies.end(), [](const BodyModel& body) { return body.solid; });
 }
 
 StepContext makeContext(const Scenario& scenario)

@@ -159,8 +159,9 @@ void Simulator::Impl::judgeEquilibrium()
       }
     }
     std::ostringstream message;
-    message << (found.is_proven ? "no equilibrium exists: no contact force opposes a motion on which the loads do work, "
-                                : "no equilibrium was found, nor a proof that there is none: ")
+    message << (found.is_proven
+                    ? "no equilibrium exists: no contact force opposes a motion on which the loads do work, "
+                    : "no equilibrium was found, nor a proof that there is none: ")
             << "body '" << bodies[fastest].model.name << "' moves most, " << found.share
             << " of the loads is not balanced";
     fail(SolverStatus::STAGNATED, message.str());

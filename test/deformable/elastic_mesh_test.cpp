@@ -79,8 +79,8 @@ double energyDensity(const Eigen::Matrix3d& gradient, const ElasticMaterial& m, 
   if (is_plane_stress)
     strain(1, 1) = -m.poisson_ratio / (1.0 - m.poisson_ratio) * (strain(0, 0) + strain(2, 2));
   const double factor = m.young_modulus / (1.0 + m.poisson_ratio);
-  const Eigen::Matrix3d stress =
-      factor * (strain + m.poisson_ratio / (1.0 - 2.0 * m.poisson_ratio) * strain.trace() * Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d stress = factor * (strain + m.poisson_ratio / (1.0 - 2.0 * m.poisson_ratio) * strain.trace() *
+                                                        Eigen::Matrix3d::Identity());
   return 0.5 * stress.cwiseProduct(strain).sum();
 }
 
@@ -316,11 +316,11 @@ TEST_F(FileTest, BrokenGmshFilesAreNamedWithTheirLine)
     const char* to;
     const char* says;
   };
-  for (const Bad& bad : {Bad{"2.2 0 8", "2.2 1 8", "bad.msh:2: found format 2.2"}, Bad{"2.2 0 8", "3.0 0 8", "expected 2.2 or 4.1"},
-                         Bad{"1 1 3 4", "1 1 3 77", "found node 77"}, Bad{"3 1 1 0", "3 nan 1 0", "expected x"},
-                         Bad{"4 2 2 8", "4 3 2 8", "element of type 3"}, Bad{"$EndNodes", "", "bad.msh"},
-                         Bad{"3 1 1 0", "3 1 1 0.5", "not in a plane"}, Bad{"3 1 1 0", "3 2 0 0", "has no volume"},
-                         Bad{"\n5\n", "\n-5\n", "found -5 nodes"}})
+  for (const Bad& bad : {Bad{"2.2 0 8", "2.2 1 8", "bad.msh:2: found format 2.2"},
+                         Bad{"2.2 0 8", "3.0 0 8", "expected 2.2 or 4.1"}, Bad{"1 1 3 4", "1 1 3 77", "found node 77"},
+                         Bad{"3 1 1 0", "3 nan 1 0", "expected x"}, Bad{"4 2 2 8", "4 3 2 8", "element of type 3"},
+                         Bad{"$EndNodes", "", "bad.msh"}, Bad{"3 1 1 0", "3 1 1 0.5", "not in a plane"},
+                         Bad{"3 1 1 0", "3 2 0 0", "has no volume"}, Bad{"\n5\n", "\n-5\n", "found -5 nodes"}})
     EXPECT_NE(messageOf(changed(bad.from, bad.to)).find(bad.says), std::string::npos)
         << bad.to << ": " << messageOf(changed(bad.from, bad.to));
   EXPECT_NE(messageOf("/no/such.msh").find("/no/such.msh: cannot be read"), std::string::npos);
@@ -356,7 +356,8 @@ TEST_F(FileTest, ExportedMatricesComeBack)
   nodes << "x,y,z,surface,fixed\n";
   for (size_t i = 0; i < mesh.nodes.size(); ++i)
     nodes << mesh.nodes[i].x() << ',' << mesh.nodes[i].y() << ',' << mesh.nodes[i].z() << ','
-          << std::binary_search(parts.surface.begin(), parts.surface.end(), static_cast<int>(i)) << ',' << (i == 3) << '\n';
+          << std::binary_search(parts.surface.begin(), parts.surface.end(), static_cast<int>(i)) << ',' << (i == 3)
+          << '\n';
   const std::string table = write("nodes.csv", nodes.str());
   for (const bool symmetric : {true, false})
   {
@@ -369,9 +370,9 @@ TEST_F(FileTest, ExportedMatricesComeBack)
     EXPECT_LT((read.stiffness - parts.stiffness).norm(), 1e-15 * parts.stiffness.norm());
   }
   const std::string good = marketOf(parts.mass, true);
-  EXPECT_THROW(readMatrices(write("bad.mtx", "%%MatrixMarket matrix array real general\n1 1\n1\n"),
-                            write("K.mtx", good), table),
-               ModelError);
+  EXPECT_THROW(
+      readMatrices(write("bad.mtx", "%%MatrixMarket matrix array real general\n1 1\n1\n"), write("K.mtx", good), table),
+      ModelError);
   std::string cut = good.substr(0, good.size() / 2);
   cut = cut.substr(0, cut.rfind('\n') + 1);
   EXPECT_THROW(readMatrices(write("cut.mtx", cut), write("K.mtx", good), table), ModelError);

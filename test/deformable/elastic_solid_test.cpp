@@ -82,9 +82,9 @@ TEST(FreeElasticBodyTest, KeepsItsEnergyAndMomentumOverAHundredThousandSteps)
 
 TEST(DampedElasticBodyTest, LosesWhatTheLedgerBooks)
 {
-  Simulator simulator(
-      loadScenario("gravity: [0, 0, -9.81]\ntime_step: 0.001\nbodies:\n" + block("block", 0.0, 0.0, ", damping: 0.01, fixed: [left]"),
-                   "test"));
+  Simulator simulator(loadScenario("gravity: [0, 0, -9.81]\ntime_step: 0.001\nbodies:\n" +
+                                       block("block", 0.0, 0.0, ", damping: 0.01, fixed: [left]"),
+                                   "test"));
   for (int step = 0; step < 400; ++step)
     ASSERT_TRUE(simulator.step().converged());
   const EnergyLedger& energy = simulator.report().energy;
@@ -116,14 +116,15 @@ BarImpact runBars(int cells, double right_length)
   const double dt = 0.5 / (cells * c);
   const auto bar = [&](const std::string& name, double length, double x, double v)
   {
-    return "  - name: " + name + "\n    elastic: {bar: " + number(length) + ", cells: " +
-           std::to_string(static_cast<int>(std::lround(cells * length))) + ", young_modulus: " + number(E) +
-           ", density: " + number(DENSITY) + ", area: " + number(AREA) + "}\n    pose: {xyz: [" + number(x) +
-           ", 0, 0]}\n    velocity: {linear: [" + number(v) + ", 0, 0]}\n";
+    return "  - name: " + name + "\n    elastic: {bar: " + number(length) +
+           ", cells: " + std::to_string(static_cast<int>(std::lround(cells * length))) +
+           ", young_modulus: " + number(E) + ", density: " + number(DENSITY) + ", area: " + number(AREA) +
+           "}\n    pose: {xyz: [" + number(x) + ", 0, 0]}\n    velocity: {linear: [" + number(v) + ", 0, 0]}\n";
   };
   Simulator simulator(loadScenario("gravity: [0, 0, 0]\ntime_step: " + number(dt) +
                                        "\nmaterials: {default: {friction: 0, restitution: 0}}\nbodies:\n" +
-                                       bar("left", 1.0, -0.5, 1.0) + bar("right", right_length, 0.5 * right_length, 0.0),
+                                       bar("left", 1.0, -0.5, 1.0) +
+                                       bar("right", right_length, 0.5 * right_length, 0.0),
                                    "test"));
   BarImpact result;
   const double transit = 1.0 / c;
@@ -256,8 +257,8 @@ TEST(StackedBlocksTest, NoNodeGoesThroughAnotherSurfaceOrTheGroundAndMomentumIsT
     for (int step = 0; step < 400; ++step)
     {
       const Eigen::Vector3d before = momentum(simulator, 0) + momentum(simulator, 1);
-      ASSERT_TRUE(simulator.step().converged()) << "run " << run << " step " << step << ": "
-                                                << simulator.outcome().message;
+      ASSERT_TRUE(simulator.step().converged())
+          << "run " << run << " step " << step << ": " << simulator.outcome().message;
       Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
       for (const ContactState& contact : simulator.contacts())
         if (simulator.shape(contact.shape_b).body < 0)
@@ -281,9 +282,8 @@ TEST(StackedBlocksTest, NoNodeGoesThroughAnotherSurfaceOrTheGroundAndMomentumIsT
 
 TEST(ElasticStateTest, TheSameRunHasTheSameBitsAndASavedStateGoesOn)
 {
-  const Scenario scenario = loadScenario("time_step: 0.001\nground: {friction: 0.4}\nbodies:\n" +
-                                             block("block", 0.0, 0.053, ", damping: 0.002"),
-                                         "test");
+  const Scenario scenario = loadScenario(
+      "time_step: 0.001\nground: {friction: 0.4}\nbodies:\n" + block("block", 0.0, 0.053, ", damping: 0.002"), "test");
   Simulator one(scenario);
   Simulator two(scenario);
   for (int step = 0; step < 150; ++step)
@@ -309,10 +309,11 @@ TEST(ElasticStateTest, TheSameRunHasTheSameBitsAndASavedStateGoesOn)
 
 TEST(ElasticRotationTest, IsRefusedByNameOnceItPassesATenthOfARadian)
 {
-  Simulator simulator(loadScenario("gravity: [0, 0, 0]\ntime_step: 0.001\nbodies:\n  - name: spinner\n    elastic: {box: [0.1, 0.1], "
-                                   "cells: [2, 2], young_modulus: 1.0e6, poisson_ratio: 0.3, density: 1000}\n    "
-                                   "velocity: {angular: [0, 1, 0]}\n",
-                                   "test"));
+  Simulator simulator(
+      loadScenario("gravity: [0, 0, 0]\ntime_step: 0.001\nbodies:\n  - name: spinner\n    elastic: {box: [0.1, 0.1], "
+                   "cells: [2, 2], young_modulus: 1.0e6, poisson_ratio: 0.3, density: 1000}\n    "
+                   "velocity: {angular: [0, 1, 0]}\n",
+                   "test"));
   double turned = 0.0;
   while (simulator.step().converged())
     turned = solidOf(simulator, 0).rotation(simulator.position(0));
@@ -325,13 +326,15 @@ TEST(ElasticRotationTest, IsRefusedByNameOnceItPassesATenthOfARadian)
 TEST(PressedElasticBlockTest, RigidBodyAndBlockShareTheForce)
 {
   // A rigid slab on an elastic block of three dimensions: at rest the block carries slab and itself.
-  const std::string slab = "<robot name='slab'><link name='slab'><inertial><mass value='2'/><inertia ixx='0.01' ixy='0' "
-                           "ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial><collision><geometry><box size='0.3 0.3 "
-                           "0.02'/></geometry></collision></link></robot>";
-  Scenario scenario = loadScenario("time_step: 0.001\nmaterials: {default: {friction: 0.5}}\nground: {}\nbodies:\n  - name: "
-                                   "block\n    elastic: {box: [0.1, 0.1, 0.1], cells: [3, 3, 3], young_modulus: 1.0e5, "
-                                   "poisson_ratio: 0.3, density: 1000, damping: 0.01}\n    pose: {xyz: [0, 0, 0.05]}\n",
-                                   "test");
+  const std::string slab =
+      "<robot name='slab'><link name='slab'><inertial><mass value='2'/><inertia ixx='0.01' ixy='0' "
+      "ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial><collision><geometry><box size='0.3 0.3 "
+      "0.02'/></geometry></collision></link></robot>";
+  Scenario scenario = loadScenario(
+      "time_step: 0.001\nmaterials: {default: {friction: 0.5}}\nground: {}\nbodies:\n  - name: "
+      "block\n    elastic: {box: [0.1, 0.1, 0.1], cells: [3, 3, 3], young_modulus: 1.0e5, "
+      "poisson_ratio: 0.3, density: 1000, damping: 0.01}\n    pose: {xyz: [0, 0, 0.05]}\n",
+      "test");
   BodySpec body;
   body.name = "slab";
   body.urdf_xml = slab;
@@ -405,7 +408,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadElastic{"LoneMass", "elastic: {mass: M.mtx}", "M.mtx"},
         BadElastic{"Joints", "elastic: {bar: 1, cells: 2, " MATERIAL "}\n    joints: {a: {position: 1}}", "joints"},
         BadElastic{"MotionWithoutSupport",
-                   "elastic: {bar: 1, cells: 2, " MATERIAL "}\n    pose: {xyz: [0, 0, 1]}\n    motion: {linear: [1, 0, 0]}",
+                   "elastic: {bar: 1, cells: 2, " MATERIAL
+                   "}\n    pose: {xyz: [0, 0, 1]}\n    motion: {linear: [1, 0, 0]}",
                    "no node is 'fixed'"},
         BadElastic{"Turning",
                    "elastic: {bar: 1, cells: 2, fixed: [left], " MATERIAL

@@ -121,7 +121,8 @@ TEST(StaticsTest, LadderLeansAtItsSteepestWhereBothFrictionsAreUsedUp)
       // A capsule along z, leaning towards +x: its caps touch ground and wall, its centre line has length l.
       const double length = 2.0;
       const double radius = 1e-6;
-      Eigen::Isometry3d pose = place(0.5 * length * std::cos(theta), radius + 0.5 * length * std::sin(theta), 0.5 * PI - theta);
+      Eigen::Isometry3d pose =
+          place(0.5 * length * std::cos(theta), radius + 0.5 * length * std::sin(theta), 0.5 * PI - theta);
       scenario.bodies.push_back(
           bodySpec("ladder", 5.0, "<capsule radius='" + number(radius) + "' length='" + number(length) + "'/>", pose));
       const double top = length * std::cos(theta) + radius;
@@ -201,8 +202,8 @@ Scenario arch(int stones, double thickness, double friction)
     const double middle = (k + 0.5) * part;
     BodySpec body;
     body.name = "stone" + std::to_string(k);
-    body.urdf_xml = "<robot name='s'><link name='s'><inertial><origin xyz='" + number(centre * std::cos(middle)) + " 0 " +
-                    number(centre * std::sin(middle)) +
+    body.urdf_xml = "<robot name='s'><link name='s'><inertial><origin xyz='" + number(centre * std::cos(middle)) +
+                    " 0 " + number(centre * std::sin(middle)) +
                     "'/><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial>"
                     "<collision><geometry>" +
                     mesh + "</geometry></collision></link></robot>";
@@ -210,8 +211,8 @@ Scenario arch(int stones, double thickness, double friction)
     scenario.bodies.push_back(body);
   }
   for (const double side : {-1.0, 1.0})
-    scenario.bodies.push_back(bodySpec(side < 0.0 ? "left_pier" : "right_pier", 1.0, box(0.6, 0.4, 0.2),
-                                       place(side, -0.1), BaseType::FIXED));
+    scenario.bodies.push_back(
+        bodySpec(side < 0.0 ? "left_pier" : "right_pier", 1.0, box(0.6, 0.4, 0.2), place(side, -0.1), BaseType::FIXED));
   return scenario;
 }
 
@@ -224,7 +225,8 @@ TEST(StaticsTest, SemicircularArchNeedsItsThicknessAndItsFriction)
   EXPECT_NEAR(by_thickness(10, 2.0, 5e-4), 0.1075, 0.01 * 0.1075);
   const double least = by_thickness(18, 2.0, 2e-4);
   EXPECT_NEAR(least, 0.1060, 0.01 * 0.1060);
-  const double limit = threshold(0.3, 0.5, 1e-3, [&](double friction) { return stands(arch(18, least + 2e-4, friction)); });
+  const double limit =
+      threshold(0.3, 0.5, 1e-3, [&](double friction) { return stands(arch(18, least + 2e-4, friction)); });
   EXPECT_NEAR(limit, 0.3958, 0.01 * 0.3958);
 }
 
@@ -278,7 +280,8 @@ TEST(StaticsTest, SqueezedBetweenWallsStandsThoughItMayFall)
 
 TEST(ElasticStaticsTest, CantileverBendsAsTimoshenkoSaysWithTheOrderOfTheMesh)
 {
-  // Plane stress, tip load F: w = F L^3/(3 E I) + F L/(kappa G A), kappa = 5/6. P1 triangles are stiff and of order two.
+  // Plane stress, tip load F: w = F L^3/(3 E I) + F L/(kappa G A), kappa = 5/6. P1 triangles are stiff and of order
+  // two.
   constexpr double LENGTH = 1.0;
   constexpr double HEIGHT = 0.2;
   constexpr double E = 1.0e7;
@@ -314,12 +317,13 @@ TEST(ElasticStaticsTest, QuasiStaticLoadStepsEndInTheStaticState)
   // state depends on where the supports are alone, not on the steps.
   const auto run = [](int steps)
   {
-    Scenario scenario = loadScenario(
-        "quasi_static: true\ntime_step: " + number(1.0 / steps) +
-            "\nmaterials: {default: {friction: 0}}\nground: {}\nbodies:\n  - name: block\n    elastic: {box: [0.1, 0.1], "
-            "cells: [6, 6], young_modulus: 1.0e5, poisson_ratio: 0.3, density: 1000, fixed: [top]}\n    pose: {xyz: [0, "
-            "0, 0.051]}\n    motion: {linear: [0, 0, -0.003]}\n",
-        "test");
+    Scenario scenario = loadScenario("quasi_static: true\ntime_step: " + number(1.0 / steps) +
+                                         "\nmaterials: {default: {friction: 0}}\nground: {}\nbodies:\n  - name: "
+                                         "block\n    elastic: {box: [0.1, 0.1], "
+                                         "cells: [6, 6], young_modulus: 1.0e5, poisson_ratio: 0.3, density: 1000, "
+                                         "fixed: [top]}\n    pose: {xyz: [0, "
+                                         "0, 0.051]}\n    motion: {linear: [0, 0, -0.003]}\n",
+                                     "test");
     Simulator simulator(scenario);
     for (int step = 0; step < steps; ++step)
       EXPECT_TRUE(simulator.step().converged()) << simulator.outcome().message;
@@ -342,9 +346,10 @@ TEST(ElasticStaticsTest, BlockUnderItsOwnWeightIsLongerByHalfTheColumn)
 {
   // A column that hangs: plane stress, nu = 0, u = rho g h^2/(2 E). In one dimension linear elements have it exact at
   // the nodes; here triangles share the load of the lowest cells unevenly, 2/16^2 of a sixteenth.
-  Simulator simulator(loadScenario("static: true\nbodies:\n  - name: column\n    elastic: {box: [0.05, 0.4], cells: [2, 16], "
-                                   "young_modulus: 1.0e6, poisson_ratio: 0.0, density: 1000, plane: stress, fixed: [top]}\n",
-                                   "test"));
+  Simulator simulator(
+      loadScenario("static: true\nbodies:\n  - name: column\n    elastic: {box: [0.05, 0.4], cells: [2, 16], "
+                   "young_modulus: 1.0e6, poisson_ratio: 0.0, density: 1000, plane: stress, fixed: [top]}\n",
+                   "test"));
   ASSERT_TRUE(simulator.step().converged());
   double lowest = 0.0;
   for (const Eigen::Isometry3d& pose : simulator.data(0).link_pose)

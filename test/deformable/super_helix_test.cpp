@@ -39,9 +39,8 @@ std::string number(double value)
 std::string rod(const std::string& name, const std::string& place, const std::string& more = "",
                 const std::string& beside = "")
 {
-  return "  - name: " + name +
-         "\n    rod: {length: 0.2, radius: 0.002, density: 1300, young_modulus: 1.0e7" + more + "}\n    pose: " + place +
-         "\n" + beside;
+  return "  - name: " + name + "\n    rod: {length: 0.2, radius: 0.002, density: 1300, young_modulus: 1.0e7" + more +
+         "}\n    pose: " + place + "\n" + beside;
 }
 
 TEST(SuperHelixTest, UniformCurvatureAndTwistAreAHelix)
@@ -111,17 +110,18 @@ TEST(SuperHelixTest, PointColumnsAreTheDerivativeOfThePoses)
 
 TEST(SuperHelixTest, ClampedStraightRodVibratesAsABeam)
 {
-  // First mode omega = 3.5160 sqrt(E I/(rho A L^4)) (Euler-Bernoulli, clamped and free), by the zero crossings of a small
-  // vibration; from above, more pieces nearer.
+  // First mode omega = 3.5160 sqrt(E I/(rho A L^4)) (Euler-Bernoulli, clamped and free), by the zero crossings of a
+  // small vibration; from above, more pieces nearer.
   const double area = PI * 4e-6;
   const double inertia = 0.25 * PI * 1.6e-11;
   const double exact = 3.5160 * std::sqrt(1.0e7 * inertia / (1300.0 * area)) / 0.04;
   double error[2];
   for (int k = 0; k < 2; ++k)
   {
-    Scenario scenario = loadScenario("gravity: [0, 0, 0]\ntime_step: 0.0025\nbodies:\n" +
-                                         rod("beam", "{xyz: [0, 0, 1]}", ", pieces: " + std::to_string(3 << k) + ", sections: 8"),
-                                     "test");
+    Scenario scenario =
+        loadScenario("gravity: [0, 0, 0]\ntime_step: 0.0025\nbodies:\n" +
+                         rod("beam", "{xyz: [0, 0, 1]}", ", pieces: " + std::to_string(3 << k) + ", sections: 8"),
+                     "test");
     Simulator simulator(scenario);
     // The static shape under a tip load, M(s) ~ (L - s): nearly the first mode.
     const int pieces = 3 << k;
@@ -154,11 +154,11 @@ TEST(SuperHelixTest, SwingingRodKeepsItsEnergyToOrderTwo)
   for (int k = 0; k < 2; ++k)
   {
     const double dt = 2.5e-4 / (1 << k);
-    Scenario scenario = loadScenario("time_step: " + number(dt) + "\nbodies:\n" +
-                                         rod("hair", "{xyz: [0, 0, 1]}",
-                                             ", pieces: 3, natural: [1, 2, 4], start: [1.5, 3.5, 2], sections: " +
-                                                 std::to_string(12 << k)),
-                                     "test");
+    Scenario scenario = loadScenario(
+        "time_step: " + number(dt) + "\nbodies:\n" +
+            rod("hair", "{xyz: [0, 0, 1]}",
+                ", pieces: 3, natural: [1, 2, 4], start: [1.5, 3.5, 2], sections: " + std::to_string(12 << k)),
+        "test");
     Simulator simulator(scenario);
     const double start = simulator.report().energy.kinetic + simulator.report().energy.potential;
     double largest = 0.0;
@@ -185,11 +185,11 @@ TEST(SuperHelixTest, CantileverHangsAsTheBeamSays)
   double error[2];
   for (int k = 0; k < 2; ++k)
   {
-    Scenario scenario = loadScenario("static: true\nbodies:\n  - name: beam\n    rod: {length: 0.2, radius: 0.002, density: "
-                                     "1300, young_modulus: 1.0e9, pieces: " +
-                                         std::to_string(4 << k) + ", sections: " + std::to_string(16 >> k) +
-                                         "}\n    pose: {xyz: [0, 0, 1]}\n",
-                                     "test");
+    Scenario scenario = loadScenario(
+        "static: true\nbodies:\n  - name: beam\n    rod: {length: 0.2, radius: 0.002, density: "
+        "1300, young_modulus: 1.0e9, pieces: " +
+            std::to_string(4 << k) + ", sections: " + std::to_string(16 >> k) + "}\n    pose: {xyz: [0, 0, 1]}\n",
+        "test");
     Simulator simulator(scenario);
     ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
     const MultibodyData& data = simulator.data(0);
@@ -224,7 +224,8 @@ double leastDistance(const Simulator& simulator, int a, int b)
 
 TEST(RodContactTest, RodsDrivenIntoEachOtherDoNotPass)
 {
-  // A soft rod falls over a stiffer one that lies across, others sway on a support that is shaken: nothing goes through.
+  // A soft rod falls over a stiffer one that lies across, others sway on a support that is shaken: nothing goes
+  // through.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> some(-1.0, 1.0);
   int touched = 0;
@@ -237,15 +238,15 @@ TEST(RodContactTest, RodsDrivenIntoEachOtherDoNotPass)
         "time_step: 0.001\nmaterials: {default: {friction: 0.2}}\nbodies:\n" +
             rod("falling", "{xyz: [-0.12, 0, 0.03]}",
                 ", damping: 0.01, natural: [0, " + number(curvature_1) + ", " + number(curvature_2) + "]") +
-            rod("across", "{xyz: [" + number(beside) + ", -0.1, 0], rpy: [0, 0, 1.5707963]}",
-                ", damping: 0.01", "    motion: {type: sine, axis: [1, 0, 0], amplitude: 0.02, frequency: 3}\n"),
+            rod("across", "{xyz: [" + number(beside) + ", -0.1, 0], rpy: [0, 0, 1.5707963]}", ", damping: 0.01",
+                "    motion: {type: sine, axis: [1, 0, 0], amplitude: 0.02, frequency: 3}\n"),
         "test");
     Simulator simulator(scenario);
     double least = 1.0;
     for (int step = 0; step < 300; ++step)
     {
-      ASSERT_TRUE(simulator.step().converged()) << "run " << run << " step " << step << ": "
-                                                << simulator.outcome().message;
+      ASSERT_TRUE(simulator.step().converged())
+          << "run " << run << " step " << step << ": " << simulator.outcome().message;
       least = std::min(least, leastDistance(simulator, 0, 1));
       for (const ContactState& contact : simulator.contacts())
       {

@@ -6,10 +6,11 @@
  * A mesh has dimension 1 (bars along x), 2 (triangles in the x-z plane of the body) or 3 (tetrahedra). Displacements
  * are linear on each cell (P1). With shape functions N_a of gradient g_a, constant on a cell of volume V,
  *
- *     K_ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I),    M_ab = rho V (1 + delta_ab) / ((d + 1)(d + 2)) I
+ *     K_ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I),    M_ab = rho V (1 + delta_ab) / ((d + 1)(d + 2))
+ * I
  *
- * lambda, mu Lame's constants; plane stress has 2 lambda mu/(lambda + 2 mu) for lambda, a bar E - 2 mu, so that E is its
- * modulus. In the plane V is area times thickness, of a bar length times cross-section. Source: Hughes, The Finite
+ * lambda, mu Lame's constants; plane stress has 2 lambda mu/(lambda + 2 mu) for lambda, a bar E - 2 mu, so that E is
+ * its modulus. In the plane V is area times thickness, of a bar length times cross-section. Source: Hughes, The Finite
  * Element Method (2000), sections 2.7, 2.9, 7.3.
  */
 #include <Eigen/Core>

@@ -6,8 +6,9 @@
  *     M q'' + damping K q' + K q = forces,      point of node i = base_pose (X_i + q_i)
  *
  * Nodes on supports do not move in that frame, which may itself move with a constant linear velocity; without supports
- * the frame goes along with the centre of mass. It does not turn: rotations are those of linear elasticity, so a state in which a cell (where there are none, the body on the
- * mean) has turned by more than 0.1 rad is refused. Source: Cadoux (2009), section 2.3.3; Hughes (2000), chapter 7.
+ * the frame goes along with the centre of mass. It does not turn: rotations are those of linear elasticity, so a state
+ * in which a cell (where there are none, the body on the mean) has turned by more than 0.1 rad is refused. Source:
+ * Cadoux (2009), section 2.3.3; Hughes (2000), chapter 7.
  */
 #include <memory>
 #include <string>

@@ -3,7 +3,8 @@
  * @file super_helix.h
  * @brief A rod as a chain of helices: clamped at its root, unstretchable, of pieces with constant twist and curvatures.
  *
- * kappa (twist, curvature 1, curvature 2 a piece [1/m]) is natural + q. With the material frame R(s), e_1 along the rod:
+ * kappa (twist, curvature 1, curvature 2 a piece [1/m]) is natural + q. With the material frame R(s), e_1 along the
+ * rod:
  *
  *     R' = R [kappa_k]x,  x' = R e_1                                   piece by piece in closed form (Rodrigues)
  *     omega(s) = int_0^s R dq dt,   v(p, s) = int_0^s (R dq) x (p - x) dt          p fixed to the section at s
@@ -34,7 +35,8 @@ struct RodSpec
   double young_modulus = 0.0;  ///< [Pa] > 0
   double poisson_ratio = 0.5;  ///< [-] in [0, 0.5]
   double damping = 0.0;  ///< D = damping K [s] >= 0
-  std::vector<double> natural;  ///< twist, curvature 1, curvature 2 [1/m]: three for all pieces or three a piece; empty: 0
+  std::vector<double>
+      natural;  ///< twist, curvature 1, curvature 2 [1/m]: three for all pieces or three a piece; empty: 0
   std::vector<double> start;  ///< the same at the start; empty: natural
 };
 

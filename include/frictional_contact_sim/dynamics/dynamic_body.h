@@ -9,8 +9,8 @@
  *     M_h (v - v_k) + dt (bias - applied) = H^T r,       M_h = M + dt^2/4 K + dt/2 D,  bias = K q_m + D v_k - gravity
  *
  * which is Moreau's midpoint rule with stiffness and damping at the mean displacement and velocity: for constant M, K
- * it keeps the energy of a free body to round-off. In a quasi-static step M_h = dt^2 K and v_k = 0, so that K (q + dt v)
- * balances the forces r / dt. The links of the body's frame tree are the root and after it one a surface node.
+ * it keeps the energy of a free body to round-off. In a quasi-static step M_h = dt^2 K and v_k = 0, so that K (q + dt
+ * v) balances the forces r / dt. The links of the body's frame tree are the root and after it one a surface node.
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
