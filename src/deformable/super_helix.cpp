@@ -278,8 +278,7 @@ void SuperHelix::computeBias(const Body& body, const Eigen::VectorXd& v, const E
   const RodWork& work = workOf(body);
   bias = stiffness_.cwiseProduct(body.q_middle + spec_.damping * body.v_start);
   const Motion motion = motionOf(work.shape, v);
-  const Eigen::Vector3d pull =
-      body.middle.base_pose.linear().transpose() * (gravity - body.base_rate.linear);  // of an accelerated support
+  const Eigen::Vector3d pull = body.middle.base_pose.linear().transpose() * gravity;
   for (size_t j = 0; j < work.shape.points.size(); ++j)
   {
     const SectionJacobian& jacobian = work.jacobians[j];
@@ -292,6 +291,17 @@ void SuperHelix::computeBias(const Body& body, const Eigen::VectorXd& v, const E
     bias += jacobian.linear.transpose() * force +
             jacobian.angular.transpose() * (work.shape.points[j].cross(force) + moment);
   }
+}
+
+void SuperHelix::applyWrenches(Body& body, double) const
+{
+  if (body.model.regime != Regime::DYNAMIC)
+    return;
+  const RodWork& work = workOf(body);
+  const Eigen::Vector3d force = -line_mass_ * (body.middle.base_pose.linear().transpose() * body.base_rate.linear);
+  for (size_t j = 0; j < work.shape.points.size(); ++j)
+    body.external += work.jacobians[j].linear.transpose() * force +
+                     work.jacobians[j].angular.transpose() * work.shape.points[j].cross(force);
 }
 
 double SuperHelix::kineticEnergy(const Body& body) const

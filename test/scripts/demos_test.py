@@ -87,7 +87,7 @@ class DemosTest(unittest.TestCase):
 
     def test_every_demo_has_its_page_and_picture(self):
         page = (ROOT / 'docs/demos.md').read_text()
-        self.assertEqual(11, len(launch_files()))
+        self.assertEqual(13, len(launch_files()))
         for launch_file in launch_files():
             self.assertIn(f'{launch_file.stem}.launch', page)
             self.assertIn(f'images/demo_{launch_file.stem}.png', page)
@@ -210,6 +210,17 @@ class DemosTest(unittest.TestCase):
         self.assertAlmostEqual(friction * force['belt'][2], force['belt'][0], delta=1e-6)  # on the belt: down, backwards
         self.assertAlmostEqual(-force['belt'][0], force['stop'][0], delta=1e-6)
         self.assertAlmostEqual(-3 * GRAVITY, force['belt'][2] + force['stop'][2], delta=1e-6)
+
+    def test_the_ground_carries_the_press_and_the_block(self):
+        document = yaml.safe_load(text_of('pressed_block'))
+        elastic = document['bodies'][1]['elastic']
+        elastic['young_modulus'] = self.dice.uniform(0.6e5, 2e5)
+        elastic['density'] = self.dice.uniform(100, 1000)
+        run = self.run_text(yaml.safe_dump(document), 1.1)  # pressed since 0.8 s
+        weight = elastic['density'] * math.prod(elastic['box']) * GRAVITY
+        push = -run.result['contact_force']['press'][2]  # on the press: upwards, so the block takes the opposite
+        self.assertGreater(abs(push), weight)
+        self.assertAlmostEqual(weight + abs(push), run.ground_force(), delta=0.02 * (weight + abs(push)))
 
     def test_the_drum_carries_up_what_falls(self):
         run = self.run_text(text_of('washing_drum'), 1.5)

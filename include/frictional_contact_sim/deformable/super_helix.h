@@ -75,7 +75,10 @@ public:
   void copyMass(const Body& body, double*& value) const override;
   void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
                    Eigen::VectorXd& bias) const override;
-  void applyWrenches(Body& /*body*/, double /*now*/) const override {}
+  /** @brief A rod takes no wrenches; Body::external is the inertia of an accelerated support, whose work is the
+   * support's.
+   */
+  void applyWrenches(Body& body, double now) const override;
   double kineticEnergy(const Body& body) const override;
   double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const override;
   double dampingPower(const VectorIn& v) const override;
