@@ -29,6 +29,13 @@ std_msgs::ColorRGBA paletteColor(int body)
   return makeColor(rgb[0], rgb[1], rgb[2], OPACITY);
 }
 
+/** Elastic bodies do; a rod is its sections' shapes. */
+bool hasSurface(const Simulator& simulator, int body)
+{
+  const auto& solid = simulator.workspace(body).model.solid;
+  return solid && !solid->facets().empty();
+}
+
 bool fileExists(const std::string& uri)
 {
   try
@@ -121,15 +128,20 @@ void BodyMarkers::fillSurface(int body, Marker& marker) const
 
 void BodyMarkers::loadBody(int body)
 {
-  if (simulator_.workspace(body).model.solid)
+  if (hasSurface(simulator_, body))
   {
     loadSurface(body);
     return;
   }
   const MultibodyModel& model = simulator_.model(body);
-  const BodyDocument document = bodyDocument(simulator_.scenario().bodies[body]);
   std::set<int> drawn;  // frames
-  for (const VisualShape& shape : readVisualShapes(document.urdf, document.folder))
+  std::vector<VisualShape> visuals;
+  if (!simulator_.workspace(body).model.solid)
+  {
+    const BodyDocument document = bodyDocument(simulator_.scenario().bodies[body]);
+    visuals = readVisualShapes(document.urdf, document.folder);
+  }
+  for (const VisualShape& shape : visuals)
   {
     const int frame = model.findFrame(shape.link);
     const auto* mesh = std::get_if<Mesh>(&shape.geometry);
@@ -178,7 +190,7 @@ void BodyMarkers::append(const ros::Time& stamp, double size, visualization_msgs
     const Shape& shape = shapes_[i];
     const Eigen::Isometry3d pose =
         shape.body < 0 ? shape.placement : simulator_.data(shape.body).link_pose[shape.link] * shape.placement;
-    if (shape.body >= 0 && simulator_.workspace(shape.body).model.solid)
+    if (shape.body >= 0 && hasSurface(simulator_, shape.body))
       fillSurface(shape.body, markers_[i]);
     else
       fillPose(pose, markers_[i].pose);

@@ -189,8 +189,7 @@ double Simulator::Impl::deepestOverlap() const
 /** Whether a row asks for a separation, not for round-off only. */
 bool Simulator::Impl::pushesOut() const
 {
-  return context.normal_law.recovery_speed > 0.0 &&
-         -context.normal_law.gapToMend(-deepestOverlap()) > GAP_ROUND_OFF;
+  return context.normal_law.recovery_speed > 0.0 && -context.normal_law.gapToMend(-deepestOverlap()) > GAP_ROUND_OFF;
 }
 
 /**

@@ -204,7 +204,7 @@ bodies:
                 self.assertAlmostEqual(1.0, sum(c * c for c in (tilted[-1].orientation.x, tilted[-1].orientation.y,
                                                                 tilted[-1].orientation.z, tilted[-1].orientation.w)))
                 self.assertEqual("imu_link", listener.messages["/imu/data"][-1].header.frame_id)
-                self.assertEqual(5, len(listener.messages["sensors/arm/mount"]))
+                self.assertTrue(node_runner.wait_until(lambda: len(listener.messages["sensors/arm/mount"]) == 5, 10.0))
                 call("reset", Empty)
                 listener.step(500, "sensors/noisy")
                 self.assertEqual(first, self.values(listener.messages["sensors/noisy"])[500:])
