@@ -10,6 +10,7 @@
 #include "frictional_contact_sim/dynamics/surface_contacts.h"
 #include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/problem/mass_factor.h"
+#include "link_tree.h"
 
 namespace frictional_contact_sim
 {
@@ -389,25 +390,9 @@ std::string ElasticSolid::refusal(const VectorIn& q) const
 MultibodyModel nodeTree(const std::string& name, const std::vector<Eigen::Vector3d>& nodes,
                         const std::vector<int>& surface)
 {
-  MultibodyModel tree;
-  tree.name = name;
-  tree.links.push_back({name, {}});
-  tree.joints.emplace_back();
-  tree.frames.emplace_back(name, 0, Eigen::Isometry3d::Identity());
+  MultibodyModel tree = rootTree(name);
   for (const int node : surface)
-  {
-    Joint joint;
-    joint.parent = 0;
-    joint.placement.translation() = nodes[node];
-    tree.joints.push_back(joint);
-    const std::string label = "node_" + std::to_string(node);
-    tree.links.push_back({label, {}});
-    CollisionShape shape;
-    shape.name = label;
-    shape.link = static_cast<int>(tree.links.size()) - 1;
-    shape.geometry = Sphere{0.0};
-    tree.shapes.push_back(shape);
-  }
+    addLink("node_" + std::to_string(node), nodes[node], Sphere{0.0}, Eigen::Matrix3d::Identity(), tree);
   finalize(tree);
   return tree;
 }

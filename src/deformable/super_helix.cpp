@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "link_tree.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -48,9 +50,15 @@ struct SectionJacobian
   Eigen::Matrix3Xd linear;
 };
 
+/** Adds the generalised force of a force at point x of a section, and a moment. */
+void addForce(const SectionJacobian& section, const Eigen::Vector3d& x, const Eigen::Vector3d& force,
+              const Eigen::Vector3d& moment, Eigen::VectorXd& total)
+{
+  total += section.linear.transpose() * force + section.angular.transpose() * (x.cross(force) + moment);
+}
+
 struct RodWork : BodyWork
 {
-  double dt = 0.0;
   RodShape shape;
   std::vector<SectionJacobian> jacobians;
   Eigen::MatrixXd matrix;
@@ -216,7 +224,6 @@ double SuperHelix::pointSpeed(const Body& body, const VectorIn& v) const
 void SuperHelix::prepare(Body& body, double dt) const
 {
   RodWork& work = workOf(body);
-  work.dt = dt;
   work.shape = shapeAt(body.q_middle);
   work.jacobians.resize(work.shape.points.size());
   Eigen::Matrix3Xd angular = Eigen::Matrix3Xd::Zero(3, velocities());
@@ -281,15 +288,13 @@ void SuperHelix::computeBias(const Body& body, const Eigen::VectorXd& v, const E
   const Eigen::Vector3d pull = body.middle.base_pose.linear().transpose() * gravity;
   for (size_t j = 0; j < work.shape.points.size(); ++j)
   {
-    const SectionJacobian& jacobian = work.jacobians[j];
     const Eigen::Vector3d& tangent = work.shape.frames[j].col(0);
     const Eigen::Vector3d force = line_mass_ * (motion.linear_rate[j] - pull);
     const Eigen::Vector3d& omega = motion.angular[j];
     const Eigen::Vector3d& rate = motion.angular_rate[j];
     const Eigen::Vector3d spin = omega + tangent.dot(omega) * tangent;
     const Eigen::Vector3d moment = spin_inertia_ * (rate + tangent.dot(rate) * tangent + omega.cross(spin));
-    bias += jacobian.linear.transpose() * force +
-            jacobian.angular.transpose() * (work.shape.points[j].cross(force) + moment);
+    addForce(work.jacobians[j], work.shape.points[j], force, moment, bias);
   }
 }
 
@@ -300,8 +305,7 @@ void SuperHelix::applyWrenches(Body& body, double) const
   const RodWork& work = workOf(body);
   const Eigen::Vector3d force = -line_mass_ * (body.middle.base_pose.linear().transpose() * body.base_rate.linear);
   for (size_t j = 0; j < work.shape.points.size(); ++j)
-    body.external += work.jacobians[j].linear.transpose() * force +
-                     work.jacobians[j].angular.transpose() * work.shape.points[j].cross(force);
+    addForce(work.jacobians[j], work.shape.points[j], force, Eigen::Vector3d::Zero(), body.external);
 }
 
 double SuperHelix::kineticEnergy(const Body& body) const
@@ -334,26 +338,11 @@ double SuperHelix::dampingPower(const VectorIn& v) const
 
 MultibodyModel sectionTree(const std::string& name, const RodSpec& spec)
 {
-  MultibodyModel tree;
-  tree.name = name;
-  tree.links.push_back({name, {}});
-  tree.joints.emplace_back();
-  tree.frames.emplace_back(name, 0, Eigen::Isometry3d::Identity());
-  const double half = 0.5 * spec.length / (spec.pieces * spec.sections);
+  MultibodyModel tree = rootTree(name);
+  const Capsule capsule{spec.radius, 0.5 * spec.length / (spec.pieces * spec.sections)};
+  const Eigen::Matrix3d along_x = Eigen::AngleAxisd(0.5 * PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   for (int k = 0; k < spec.pieces * spec.sections; ++k)
-  {
-    Joint joint;
-    joint.parent = 0;
-    tree.joints.push_back(joint);
-    const std::string label = "section_" + std::to_string(k);
-    tree.links.push_back({label, {}});
-    CollisionShape shape;
-    shape.name = label;
-    shape.link = k + 1;
-    shape.geometry = Capsule{spec.radius, half};
-    shape.placement.linear() = Eigen::AngleAxisd(0.5 * PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
-    tree.shapes.push_back(shape);
-  }
+    addLink("section_" + std::to_string(k), Eigen::Vector3d::Zero(), capsule, along_x, tree);
   finalize(tree);
   return tree;
 }

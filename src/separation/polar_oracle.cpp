@@ -1,7 +1,6 @@
 #include "frictional_contact_sim/separation/polar_oracle.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "dense_rows.h"
@@ -12,7 +11,6 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr int SIMPLEX_ITERATIONS = 200000;
-constexpr double INFINITE = std::numeric_limits<double>::max();  ///< LinearProgram::INFINITE
 /// Reduced costs above this, over the largest cost, keep a column at zero on the whole face.
 constexpr double POSITIVE = 1e-9;
 }  // namespace
@@ -27,7 +25,7 @@ PolarOracle::PolarOracle(const Disjunction& disjunction, double bound)
     pivots_.push_back(pivotRow(terms_.back(), "term " + std::to_string(k)));
     firsts_.push_back(column);
     for (int i = 0; i <= terms_.back().rows(); ++i)
-      program_.addColumn(0.0, INFINITE, 0.0);
+      program_.addColumn(0.0, LinearProgram::INFINITE, 0.0);
     column += terms_.back().rows() + 1;
   }
   const Polyhedron& first = terms_.front();
@@ -56,15 +54,15 @@ PolarOracle::PolarOracle(const Disjunction& disjunction, double bound)
   row_upper_ = row_lower_;
   if (bound > 0.0)
   {
-    sum.addTo(program_, -INFINITE, bound);
-    row_lower_[equations] = -INFINITE;
+    sum.addTo(program_, -LinearProgram::INFINITE, bound);
+    row_lower_[equations] = -LinearProgram::INFINITE;
     row_upper_[equations] = bound;
   }
   generic_.resize(disjunction.dimension());
   for (Eigen::Index j = 0; j < generic_.size(); ++j)
     generic_[j] = std::cos(1.0 + 2.3 * static_cast<double>(j * j));
   lower_.setZero(column);
-  upper_.setConstant(column, INFINITE);
+  upper_.setConstant(column, LinearProgram::INFINITE);
   feasible_ = solveFirst(program_);
 }
 
@@ -92,7 +90,7 @@ void PolarOracle::fixFace()
     if (reduced[j] > POSITIVE)
       upper_[j] = 0.0;
   for (Eigen::Index i = 0; i < prices.size(); ++i)
-    if (std::abs(prices[i]) > POSITIVE && row_upper_[i] < INFINITE)
+    if (std::abs(prices[i]) > POSITIVE && row_upper_[i] < LinearProgram::INFINITE)
       row_lower_[i] = row_upper_[i];
   program_.setBounds(lower_, upper_, row_lower_, row_upper_);
 }

@@ -146,10 +146,7 @@ void setInitialBase(const BodySpec& spec, const Draft& body)
     fail(model.name, std::string("motion") + (spec.motion->isProgram() ? " over time" : ".angular") +
                          " is for a body without joints, this one has " + std::to_string(model.nv) +
                          ": weld a floating base to a body that moves (loops)");
-  body.model.base_motion = *spec.motion;
-  body.model.base_motion.start = body.state.base_pose;
-  if (spec.motion->isProgram())
-    body.state.base_pose = programPose(body.model.base_motion, 0.0);
+  startMotion(*spec.motion, body);
 }
 
 void setSurfaces(const BodySpec& spec, const Draft& body)
@@ -337,6 +334,14 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings)
   model.name = spec.name;
   model.gravity_compensation = spec.gravity_compensation;
   return model;
+}
+
+void startMotion(const BaseMotion& motion, const Draft& body)
+{
+  body.model.base_motion = motion;
+  body.model.base_motion.start = body.state.base_pose;
+  if (motion.isProgram())
+    body.state.base_pose = programPose(body.model.base_motion, 0.0);
 }
 
 void setInitialState(const BodySpec& spec, const Draft& body, std::vector<std::string>& warnings)

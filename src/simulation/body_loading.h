@@ -24,6 +24,9 @@ BodyModel loadBody(const BodySpec& spec, std::vector<std::string>& warnings);
 /** Joints, base pose and velocities. */
 void setInitialState(const BodySpec& spec, const Draft& body, std::vector<std::string>& warnings);
 
+/** The base moves from its pose on, along `motion`: where a program says, from the start. */
+void startMotion(const BaseMotion& motion, const Draft& body);
+
 /** Adds the body's shapes, puts it on the ground where no pose is given, and gives it commands and wrenches. */
 void placeBody(const BodySpec& spec, const Draft& body, WorldModel& world);
 

@@ -17,14 +17,6 @@ constexpr double DROP_HEIGHT = 0.001;  ///< lowest node above the ground where n
   throw std::invalid_argument("body '" + spec.name + "': " + message);
 }
 
-const ElasticSolid& solidOf(const BodyModel& model)
-{
-  return static_cast<const ElasticSolid&>(*model.solid);
-}
-}  // namespace
-
-namespace
-{
 /** A clamped rod: its shape at the start, and how its root is moved. */
 void setRodState(const BodySpec& spec, const Draft& body)
 {
@@ -33,10 +25,7 @@ void setRodState(const BodySpec& spec, const Draft& body)
     return;
   if (!spec.motion->turns.empty() || !spec.motion->velocity.angular.isZero())
     fail(spec, "motion of a rod is a translation: its root does not turn");
-  body.model.base_motion = *spec.motion;
-  body.model.base_motion.start = body.state.base_pose;
-  if (spec.motion->isProgram())
-    body.state.base_pose = programPose(body.model.base_motion, 0.0);
+  startMotion(*spec.motion, body);
 }
 }  // namespace
 
@@ -64,7 +53,7 @@ void setElasticState(const BodySpec& spec, const Draft& body)
     setRodState(spec, body);
     return;
   }
-  const ElasticSolid& solid = solidOf(body.model);
+  const ElasticSolid& solid = static_cast<const ElasticSolid&>(*body.model.solid);
   const Eigen::Matrix3d back = body.state.base_pose.linear().transpose();
   const bool is_moving = !spec.linear_velocity.isZero() || !spec.angular_velocity.isZero();
   if (is_moving && solid.isSupported())
@@ -85,8 +74,7 @@ void setElasticState(const BodySpec& spec, const Draft& body)
     fail(spec, "motion is that of supports, but no node is 'fixed'");
   if (spec.motion->isProgram() || !spec.motion->velocity.angular.isZero())
     fail(spec, "motion of an elastic body is a constant linear velocity: its frame neither turns nor accelerates");
-  body.model.base_motion = *spec.motion;
-  body.model.base_motion.start = body.state.base_pose;
+  startMotion(*spec.motion, body);
 }
 
 void placeElastic(const BodySpec& spec, const Draft& body, WorldModel& world)

@@ -37,7 +37,7 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
-  double deepestOverlap() const;
+  double deepestGap() const;
   bool pushesOut() const;
   void askLess();
   void setUnsatisfied();

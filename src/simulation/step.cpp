@@ -177,19 +177,19 @@ void Simulator::Impl::judgeEquilibrium()
   result.law_errors.setZero(static_cast<Eigen::Index>(problem.laws.size()));
 }
 
-/** What rows are to push out at most [m] >= 0. */
-double Simulator::Impl::deepestOverlap() const
+/** Of the rows, 0 where none overlaps [m] <= 0. */
+double Simulator::Impl::deepestGap() const
 {
   double gap = 0.0;
   for (const ContactPoint& point : *context.points)
     gap = std::min(gap, point.is_linearised ? point.row_gap : point.gap);
-  return -gap;
+  return gap;
 }
 
 /** Whether a row asks for a separation, not for round-off only. */
 bool Simulator::Impl::pushesOut() const
 {
-  return context.normal_law.recovery_speed > 0.0 && -context.normal_law.gapToMend(-deepestOverlap()) > GAP_ROUND_OFF;
+  return context.normal_law.recovery_speed > 0.0 && context.normal_law.gapToMend(deepestGap()) < -GAP_ROUND_OFF;
 }
 
 /**
@@ -200,7 +200,7 @@ void Simulator::Impl::askLess()
 {
   if (pushesOut())
   {
-    wedged_overlap = deepestOverlap();
+    wedged_overlap = -deepestGap();
     context.normal_law.recovery_speed = 0.0;
     contact_set.beLenient();
   }
@@ -244,8 +244,9 @@ void Simulator::Impl::advance()
 
 void Simulator::Impl::take()
 {
-  if (WEDGED_MARGIN * wedged_overlap > GAP_ROUND_OFF && WEDGED_MARGIN * wedged_overlap <= CONTACT_GAP)
-    state.wedged = {WEDGED_MARGIN * wedged_overlap, state.step + WEDGED_STEPS};
+  const double left = WEDGED_MARGIN * wedged_overlap;
+  if (left > GAP_ROUND_OFF && left <= CONTACT_GAP)
+    state.wedged = {left, state.step + WEDGED_STEPS};
   assembly.setMeanVelocity(result.solution);
   assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)
