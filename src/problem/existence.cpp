@@ -147,7 +147,7 @@ private:
     {
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor{Eigen::MatrixXd(stacked)};
       v = factor.solve(right);
-      v += factor.solve(right - stacked * v);
+      v += factor.solve(Eigen::VectorXd(right - stacked * v));
     }
     else
     {

@@ -127,7 +127,7 @@ double roundOffMissing(const ContactKinematics& kinematics, const Eigen::VectorX
 Eigen::VectorXd contradiction(const ContactKinematics& kinematics)
 {
   const Eigen::MatrixXd E = kinematics.E;
-  const Eigen::VectorXd nearest = E.completeOrthogonalDecomposition().solve(-kinematics.b);
+  const Eigen::VectorXd nearest = E.completeOrthogonalDecomposition().solve(Eigen::VectorXd(-kinematics.b));
   Eigen::VectorXd lambda = -(kinematics.b + E * nearest);
   const double size = lambda.norm();
   if (size > 0.0)
