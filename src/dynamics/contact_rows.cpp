@@ -190,15 +190,16 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
   const Restitution restitution{material.restitution, material.tangential_restitution};
+  const NormalLaw law = context.normalLaw(point);
   NormalShift shift;
-  if (point.is_linearised && context.normal_law.recovery_speed > 0.0)
-    shift.shift = context.normal_law.gapToMend(point.row_gap) / context.dt;
+  if (point.is_linearised && law.recovery_speed > 0.0)
+    shift.shift = law.gapToMend(point.row_gap) / context.dt;
   else if (point.is_linearised)  // asks for no separation either
     shift.shift = std::max(point.row_gap, 0.0) / context.dt;
   else if (context.impact)
     shift = impactShift(point.gap, old_normal, restitution, context.dt);
   else
-    shift = normalShift(context.normal_law, point.gap, old_normal, restitution, context.dt);
+    shift = normalShift(law, point.gap, old_normal, restitution, context.dt);
   if (!shift.active || !movesAlong(point.normal))
     return;
   contact.friction = material.friction;

@@ -87,11 +87,26 @@ void checkNumbers(const Simulator& simulator, const SimulationState& state)
         throw StateError("wrench.frame is " + std::to_string(wrench.frame) + ", expected 0 to " +
                          std::to_string(frames - 1));
   }
-  for (const ContactState& contact : state.rows.contacts)
-    for (const int shape : {contact.shape_a, contact.shape_b})
+  const auto checkShapes = [&](const char* of, int shape_a, int shape_b)
+  {
+    for (const int shape : {shape_a, shape_b})
       if (shape < 0 || shape >= simulator.shapeCount())
-        throw StateError("a contact's shape is " + std::to_string(shape) + ", expected 0 to " +
+        throw StateError(std::string(of) + " shape is " + std::to_string(shape) + ", expected 0 to " +
                          std::to_string(simulator.shapeCount() - 1));
+  };
+  for (const ContactState& contact : state.rows.contacts)
+    checkShapes("a contact's", contact.shape_a, contact.shape_b);
+  for (size_t i = 0; i < state.wedged.size(); ++i)
+  {
+    const WedgedPair& pair = state.wedged[i];
+    checkShapes("a wedged pair's", pair.shape_a, pair.shape_b);
+    if (!(pair.overlap >= 0.0) || !std::isfinite(pair.overlap) || pair.steps < 1)
+      throw StateError("a wedged pair is left " + std::to_string(pair.overlap) + " m for " +
+                       std::to_string(pair.steps) + " steps, expected a finite overlap >= 0 and at least one step");
+    if (i > 0 && std::make_pair(state.wedged[i - 1].shape_a, state.wedged[i - 1].shape_b) >=
+                     std::make_pair(pair.shape_a, pair.shape_b))
+      throw StateError("wedged pairs are not in the order of their shapes");
+  }
 }
 }  // namespace
 
@@ -173,6 +188,7 @@ void Simulator::Impl::solveImpact()
 {
   for (Body& body : bodies)
     moveToImpact(body);
+  beginRows();
   assembly.begin(context);
   assembly.assembleForces(context);
   context.points = &contact_set.find(context);

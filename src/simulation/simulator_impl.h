@@ -37,8 +37,9 @@ struct Simulator::Impl
   void advance();
   void finishStep();
 
-  double deepestGap() const;
+  void beginRows();
   bool pushesOut() const;
+  bool pushesOut(const ContactPoint& point) const;
   void askLess();
   void setUnsatisfied();
   void fail(SolverStatus status, const std::string& message);
@@ -100,7 +101,7 @@ struct Simulator::Impl
   std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> good;
   Solution guess;
   SolverResult result;
-  double wedged_overlap = 0.0;  ///< could not be pushed out in this step [m]
+  int failed_pushes = 0;  ///< solves of this step without an answer that pushed overlaps out
   bool is_solved = false;  ///< assembly.problem() and result belong together
   StepOutcome outcome;
   StepSummary report;

@@ -108,6 +108,14 @@ void visit(StateArchive& archive, ContactState& contact)
   archive.number("contact.cone_margin", contact.cone_margin);
 }
 
+void visit(StateArchive& archive, WedgedPair& pair)
+{
+  archive.index("wedged.shape_a", pair.shape_a);
+  archive.index("wedged.shape_b", pair.shape_b);
+  archive.number("wedged.overlap", pair.overlap);
+  archive.index("wedged.steps", pair.steps);
+}
+
 void visit(StateArchive& archive, Closure& weld)
 {
   archive.index("weld.body_a", weld.body_a);
@@ -201,8 +209,9 @@ void visitState(StateArchive& archive, SimulationState& state)
       archive.number(memory.name, impulse);
   visit(archive, state.energy);
   archive.number("energy_start", state.energy_start);
-  archive.number("wedged.overlap", state.wedged.overlap);
-  archive.integer("wedged.until", state.wedged.until);
+  if (!state.wedged.empty() || !archive.skipsEmptyNewLists())
+    for (WedgedPair& pair : archive.list("wedged pairs", state.wedged))
+      visit(archive, pair);
   if (!state.rows.loops.empty() || !archive.skipsEmptyNewLists())
     for (Closure& loop : archive.fixedList("loops", state.rows.loops))
       visitLoop(archive, loop);

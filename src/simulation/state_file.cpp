@@ -17,7 +17,7 @@ namespace frictional_contact_sim
 namespace
 {
 const std::string MAGIC = "FCSSTATE";
-constexpr std::uint64_t VERSION = 6;  ///< 2: wide contact ids, 3: welds, 4: settings, 5: loops, 6: wedged overlaps
+constexpr std::uint64_t VERSION = 7;  ///< 2: wide contact ids, 3: welds, 4: settings, 5: loops, 6: wedged overlaps
 constexpr size_t HEADER = 8 + 4 + 8 + 8;  ///< bytes
 
 void append(std::string& bytes, std::uint64_t value, int width)

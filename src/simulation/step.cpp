@@ -16,10 +16,12 @@ namespace
 {
 constexpr double EQUILIBRIUM_ROUND_OFF = 1e-8;  ///< share of the loads that a balance may miss
 constexpr double GAP_ROUND_OFF = 1e-14;  ///< a resting contact is no deeper [m]
-/// Overlaps that could not be pushed out are left for so many steps, where they are shallower than what touches: else
-/// every step of a heap that wedges some would ask in vain.
-constexpr std::uint64_t WEDGED_STEPS = 64;
-constexpr double WEDGED_MARGIN = 2.0;  ///< for what the solver's tolerance adds to them in these steps
+/// Overlaps that could not be pushed out are left for so many steps: else every one would ask in vain.
+constexpr int WEDGED_STEPS = 64;
+constexpr double WEDGED_MARGIN = 1e-9;  ///< for what the solver's tolerance adds to them in these steps [m]
+/// Solves of a step that leave the overlaps of their worst pairs only, before all are left.
+constexpr int MOST_PARTIAL_PUSHES = 2;
+constexpr double SHARE_OF_WORST = 0.01;  ///< a law with this share of the largest error is not met
 /// Rounds (solve, look at the rows, solve again) that may end without an answer before the step is given up: a servo
 /// that becomes a bounded row may be what makes the problem solvable, but a failed solve costs its whole budget.
 constexpr int MOST_FAILED_ROUNDS = 2;
@@ -86,10 +88,7 @@ void Simulator::Impl::solveStep()
 {
   Again again = Again::FROM_GUESS;
   int failed_rounds = 0;
-  context.points = nullptr;
-  context.normal_law.recovery_speed = NormalLaw().recovery_speed;
-  context.normal_law.left_overlap = state.step < state.wedged.until ? state.wedged.overlap : 0.0;
-  wedged_overlap = 0.0;
+  beginRows();
   do
   {
     if (again == Again::FROM_GUESS)
@@ -177,35 +176,74 @@ void Simulator::Impl::judgeEquilibrium()
   result.law_errors.setZero(static_cast<Eigen::Index>(problem.laws.size()));
 }
 
-/** Of the rows, 0 where none overlaps [m] <= 0. */
-double Simulator::Impl::deepestGap() const
+/** No points yet, and what the last problem asked less of is asked again. */
+void Simulator::Impl::beginRows()
 {
-  double gap = 0.0;
-  for (const ContactPoint& point : *context.points)
-    gap = std::min(gap, point.is_linearised ? point.row_gap : point.gap);
-  return gap;
+  context.points = nullptr;
+  context.normal_law.recovery_speed = NormalLaw().recovery_speed;
+  context.wedged = state.wedged;
+  context.wedged_ahead.clear();
+  failed_pushes = 0;
 }
 
-/** Whether a row asks for a separation, not for round-off only. */
+/** Whether the row of a point asks for a separation, not for round-off only. */
+bool Simulator::Impl::pushesOut(const ContactPoint& point) const
+{
+  const double gap = point.is_linearised ? point.row_gap : point.gap;
+  return gap < -GAP_ROUND_OFF && context.normalLaw(point).gapToMend(gap) < -GAP_ROUND_OFF;
+}
+
 bool Simulator::Impl::pushesOut() const
 {
-  return context.normal_law.recovery_speed > 0.0 && context.normal_law.gapToMend(deepestGap()) < -GAP_ROUND_OFF;
+  return context.normal_law.recovery_speed > 0.0 &&
+         std::any_of(context.points->begin(), context.points->end(),
+                     [this](const ContactPoint& point) { return pushesOut(point); });
 }
 
 /**
- * After a solve without an answer: overlaps that are not pushed out (what is wedged, u_N < mu |u_T| in all its motions,
- * cannot separate whatever the force), else fewer rows.
+ * After a solve without an answer: overlaps that are not pushed out (see dynamics/wedged_pairs.h), those of the pairs
+ * whose law is not met first, then all; else fewer rows.
  */
 void Simulator::Impl::askLess()
 {
-  if (pushesOut())
+  if (!pushesOut())
   {
-    wedged_overlap = -deepestGap();
+    contact_set.goBack();
+    return;
+  }
+  const std::vector<ContactPoint>& points = *context.points;
+  std::vector<char> leaves(points.size(), 0);
+  for (size_t i = 0; i < points.size(); ++i)
+    leaves[i] = pushesOut(points[i]);
+  if (++failed_pushes <= MOST_PARTIAL_PUSHES)
+  {
+    std::vector<char> is_worst(points.size(), 0);
+    bool any = false;
+    const double worst = result.law_errors.size() == 0 ? 0.0 : result.law_errors.maxCoeff();
+    for (Eigen::Index law = 0; law < result.law_errors.size(); ++law)
+      if (result.law_errors[law] > SHARE_OF_WORST * worst)
+        if (const ContactPoint* point = assembly.contactOf(context, static_cast<int>(law)))
+        {
+          const auto i = static_cast<size_t>(point - points.data());
+          is_worst[i] = leaves[i];
+          any = any || leaves[i] != 0;
+        }
+    if (any)
+      leaves.swap(is_worst);
+  }
+  else
+  {
     context.normal_law.recovery_speed = 0.0;
     contact_set.beLenient();
   }
-  else
-    contact_set.goBack();
+  for (size_t i = 0; i < points.size(); ++i)
+    if (leaves[i] != 0)
+    {
+      const ContactPoint& point = points[i];
+      const double overlap = -(point.is_linearised ? point.row_gap : point.gap);
+      leaveOverlap({point.shape_a, point.shape_b, overlap + WEDGED_MARGIN, WEDGED_STEPS},
+                   point.is_linearised ? context.wedged_ahead : context.wedged);
+    }
 }
 
 /** Solves converged, but not the rows' own law. */
@@ -244,9 +282,8 @@ void Simulator::Impl::advance()
 
 void Simulator::Impl::take()
 {
-  const double left = WEDGED_MARGIN * wedged_overlap;
-  if (left > GAP_ROUND_OFF && left <= CONTACT_GAP)
-    state.wedged = {left, state.step + WEDGED_STEPS};
+  state.wedged = context.wedged;
+  countStep(state.wedged);
   assembly.setMeanVelocity(result.solution);
   assembly.book(context, result.solution, state.energy);
   for (Body& body : bodies)

@@ -78,6 +78,19 @@ std::vector<ContactState> carriedContacts(const std::vector<ContactState>& from,
   return contacts;
 }
 
+WedgedPairs carriedWedges(const WedgedPairs& from, const Renumbering& new_shape)
+{
+  WedgedPairs wedged;
+  for (WedgedPair pair : from)
+  {
+    pair.shape_a = new_shape[static_cast<size_t>(pair.shape_a)];
+    pair.shape_b = new_shape[static_cast<size_t>(pair.shape_b)];
+    if (pair.shape_a >= 0 && pair.shape_b >= 0)
+      leaveOverlap(pair, wedged);
+  }
+  return wedged;
+}
+
 std::vector<Closure> carriedWelds(const std::vector<Closure>& from, const Renumbering& new_body)
 {
   std::vector<Closure> welds;
@@ -117,7 +130,7 @@ SimulationState carriedState(const SimulationState& from, SimulationState to, co
   to.scenario_clock = from.scenario_clock;
   to.energy = from.energy;
   to.energy_start = from.energy_start;
-  to.wedged = from.wedged;
+  to.wedged = carriedWedges(from.wedged, new_shape);
   to.rows.contacts = carriedContacts(from.rows.contacts, new_shape);
   to.rows.welds = carriedWelds(from.rows.welds, new_body);
   carryLoops(from.rows.loops, new_body, to.rows.loops);

@@ -20,6 +20,7 @@
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/dynamics/contact_state.h"
 #include "frictional_contact_sim/dynamics/row_sink.h"
+#include "frictional_contact_sim/dynamics/wedged_pairs.h"
 #include "frictional_contact_sim/model/kinematics.h"
 
 namespace frictional_contact_sim
@@ -36,6 +37,16 @@ struct StepContext
   bool impact = false;  ///< an impact at one instant: rows at gap <= CONTACT_GAP, no forces
   const std::vector<ContactPoint>* points = nullptr;  ///< detected at the midpoint (impact: at q), valid for the step
   const Eigen::VectorXd* v_old = nullptr;  ///< velocities of all bodies at the start of the step
+  WedgedPairs wedged;  ///< of the state, and what this step adds
+  WedgedPairs wedged_ahead;  ///< the same of linearised rows, whose gap is that of this step's end; of this step alone
+
+  /** @brief The law of one point. */
+  NormalLaw normalLaw(const ContactPoint& point) const
+  {
+    NormalLaw law = normal_law;
+    law.left_overlap = overlapLeft(point.is_linearised ? wedged_ahead : wedged, point.shape_a, point.shape_b);
+    return law;
+  }
 };
 
 /** @brief The answer of a step as its rows read it. */

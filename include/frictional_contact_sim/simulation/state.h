@@ -13,6 +13,7 @@
 #include "frictional_contact_sim/dynamics/body.h"
 #include "frictional_contact_sim/dynamics/energy_ledger.h"
 #include "frictional_contact_sim/dynamics/row_source.h"
+#include "frictional_contact_sim/dynamics/wedged_pairs.h"
 
 namespace frictional_contact_sim
 {
@@ -32,13 +33,6 @@ struct StepClock
   }
 };
 
-/** @brief Overlaps that could not be pushed out: wedged bodies. */
-struct WedgedOverlaps
-{
-  double overlap = 0.0;  ///< no deeper ones are left [m]
-  std::uint64_t until = 0;  ///< SimulationState::step from which on they are pushed out again
-};
-
 struct SimulationState
 {
   std::uint64_t step = 0;  ///< steps since the simulator was made; never reset
@@ -48,7 +42,7 @@ struct SimulationState
   std::vector<BodyState> bodies;
   RowState rows;
   EnergyLedger energy;
-  WedgedOverlaps wedged;
+  WedgedPairs wedged;
   double energy_start = 0.0;  ///< kinetic + potential when the ledger was started [J]
 
   double time() const { return clock.time(dt); }
