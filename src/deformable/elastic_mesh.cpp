@@ -58,6 +58,24 @@ std::array<int, 3> facetOf(const ElasticMesh& mesh, const Cell& cell, int opposi
     std::swap(facet[0], facet[1]);
   return facet;
 }
+
+/** Whether an even number of swaps sorts the nodes of a facet: cells on its two sides have it in opposite orders. */
+bool isEven(const std::array<int, 3>& facet, int count)
+{
+  int swaps = 0;
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b)
+      swaps += facet[a] > facet[b] ? 1 : 0;
+  return swaps % 2 == 0;
+}
+
+/** A facet of the cells seen so far. */
+struct SharedFacet
+{
+  std::array<int, 3> nodes;  ///< as its first cell has it
+  size_t cell;  ///< the first one
+  int cells = 1;
+};
 }  // namespace
 
 const std::vector<int>& axesOf(int dimension)
@@ -68,7 +86,7 @@ const std::vector<int>& axesOf(int dimension)
 
 void closeMesh(ElasticMesh& mesh)
 {
-  std::map<std::array<int, 3>, std::pair<int, std::array<int, 3>>> seen;  // sorted nodes: how often, as it stands
+  std::map<std::array<int, 3>, SharedFacet> seen;  // by its sorted nodes
   for (size_t c = 0; c < mesh.cells.size(); ++c)
   {
     Cell& cell = mesh.cells[c];
@@ -82,14 +100,18 @@ void closeMesh(ElasticMesh& mesh)
       const std::array<int, 3> facet = facetOf(mesh, cell, opposite);
       std::array<int, 3> sorted = facet;
       std::sort(sorted.begin(), sorted.end());
-      const auto [entry, is_new] = seen.try_emplace(sorted, 1, facet);
-      entry->second.first += is_new ? 0 : 1;
+      const auto [entry, is_new] = seen.try_emplace(sorted, SharedFacet{facet, c});
+      SharedFacet& shared = entry->second;
+      if (!is_new && (++shared.cells > 2 ||
+                      (mesh.dimension > 1 && isEven(facet, mesh.dimension) == isEven(shared.nodes, mesh.dimension))))
+        throw ModelError("cells " + std::to_string(shared.cell + 1) + " and " + std::to_string(c + 1) +
+                         " lie on one side of a facet that they share, expected every cell once and none in another");
     }
   }
   mesh.facets.clear();
   for (const auto& entry : seen)
-    if (entry.second.first == 1)
-      mesh.facets.push_back(entry.second.second);
+    if (entry.second.cells == 1)
+      mesh.facets.push_back(entry.second.nodes);
 }
 
 ElasticMesh barMesh(double length, int cells)
@@ -231,17 +253,14 @@ std::vector<int> nodesNamed(const ElasticParts& parts, const std::string& name)
   return found;
 }
 
-Eigen::Vector3d cellRotation(const ElasticParts& parts, const std::array<int, 4>& cell,
-                             const std::vector<Eigen::Vector3d>& u)
+Eigen::Matrix<double, 4, 3> cellGradients(const ElasticParts& parts, const std::array<int, 4>& cell)
 {
   const Simplex simplex = simplexOf(parts.nodes, cell, parts.dimension);
   const std::vector<int>& axes = axesOf(parts.dimension);
-  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();  // d u_row / d x_column
-  for (int a = 0; a <= parts.dimension; ++a)
-    for (int i = 0; i < parts.dimension; ++i)
-      gradient.col(axes[i]) += simplex.gradients(a, i) * u[cell[a]];
-  return 0.5 * Eigen::Vector3d(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0),
-                               gradient(1, 0) - gradient(0, 1));
+  Eigen::Matrix<double, 4, 3> gradients = Eigen::Matrix<double, 4, 3>::Zero();
+  for (int i = 0; i < parts.dimension; ++i)
+    gradients.col(axes[i]) = simplex.gradients.col(i);
+  return gradients;
 }
 
 }  // namespace frictional_contact_sim

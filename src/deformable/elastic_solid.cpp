@@ -1,6 +1,5 @@
 #include "frictional_contact_sim/deformable/elastic_solid.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +7,6 @@
 #include <utility>
 
 #include "frictional_contact_sim/dynamics/surface_contacts.h"
-#include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/problem/mass_factor.h"
 #include "link_tree.h"
 
@@ -33,106 +31,7 @@ const ElasticWork& workOf(const Body& body)
 {
   return static_cast<const ElasticWork&>(*body.work);
 }
-
-/** Rows and columns of the coordinates that are kept. */
-SparseRows restricted(const SparseRows& matrix, const std::vector<int>& kept, int size)
-{
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int row = 0; row < matrix.rows(); ++row)
-    for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-      if (kept[row] >= 0 && kept[entry.col()] >= 0)
-        entries.emplace_back(kept[row], kept[entry.col()], entry.value());
-  SparseRows result(size, size);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 }  // namespace
-
-ElasticSolid::ElasticSolid(const std::string& name, ElasticParts parts, const std::vector<int>& supports,
-                           double damping)
-  : name_(name), parts_(std::move(parts)), damping_(damping), is_supported_(!supports.empty())
-{
-  setMatrices(supports);
-  setSurface();
-}
-
-void ElasticSolid::setMatrices(const std::vector<int>& supports)
-{
-  const std::vector<int>& axes = axesOf(parts_.dimension);
-  const int d = parts_.dimension;
-  const auto count = parts_.nodes.size();
-  std::vector<char> is_fixed(count, 0);
-  for (const int node : supports)
-    is_fixed[node] = 1;
-  dofs_.assign(count, Eigen::Vector3i::Constant(-1));
-  std::vector<int> kept(count * d, -1);
-  int size = 0;
-  for (size_t node = 0; node < count; ++node)
-    for (int i = 0; i < d && is_fixed[node] == 0; ++i)
-      dofs_[node][axes[i]] = kept[node * d + i] = size++;
-  if (size == 0)
-    throw ModelError("every node is fixed, expected one at least that moves");
-  // One pattern for both, so that M + c K is entry by entry.
-  mass_ = restricted(parts_.mass + 0.0 * parts_.stiffness, kept, size);
-  stiffness_ = restricted(parts_.stiffness + 0.0 * parts_.mass, kept, size);
-  mass_.makeCompressed();
-  stiffness_.makeCompressed();
-  columns_.resize(size);
-  for (int row = 0; row < size; ++row)
-    for (SparseRows::InnerIterator entry(mass_, row); entry; ++entry)
-      columns_[row].push_back(static_cast<int>(entry.col()));
-  for (int i = 0; i < 3; ++i)
-    carried_[i] = Eigen::VectorXd::Zero(size);
-  for (int i = 0; i < d; ++i)
-  {
-    Eigen::VectorXd translation = Eigen::VectorXd::Zero(parts_.mass.rows());
-    for (size_t node = 0; node < count; ++node)
-      translation[node * d + i] = 1.0;
-    const Eigen::VectorXd product = parts_.mass * translation;
-    total_mass_ = translation.dot(product);
-    for (size_t row = 0; row < kept.size(); ++row)
-      if (kept[row] >= 0)
-        carried_[axes[i]][kept[row]] = product[row];
-  }
-  try
-  {
-    MassFactor().compute(mass_);
-  }
-  catch (const std::invalid_argument& error)
-  {
-    throw ModelError(std::string("the mass matrix is refused: ") + error.what());
-  }
-}
-
-void ElasticSolid::setSurface()
-{
-  const std::vector<int>& surface = parts_.surface;
-  const auto linkOf = [&](int node)
-  { return 1 + static_cast<int>(std::lower_bound(surface.begin(), surface.end(), node) - surface.begin()); };
-  node_distance_ = std::numeric_limits<double>::infinity();
-  for (const std::array<int, 3>& nodes : parts_.facets)
-  {
-    Facet facet;
-    facet.count = parts_.dimension;
-    for (int k = 0; k < facet.count; ++k)
-      facet.links[k] = linkOf(nodes[k]);
-    for (int k = 1; k < facet.count; ++k)
-      node_distance_ = std::min(node_distance_, (parts_.nodes[nodes[k]] - parts_.nodes[nodes[k - 1]]).norm());
-    if (facet.count == 1)  // an end of a bar, which is about the origin
-      facet.axis.x() = parts_.nodes[nodes[0]].x() < 0.0 ? -1.0 : 1.0;
-    facets_.push_back(facet);
-  }
-  if (parts_.dimension == 1)
-    for (const std::array<int, 4>& cell : parts_.cells)
-      node_distance_ = std::min(node_distance_, (parts_.nodes[cell[1]] - parts_.nodes[cell[0]]).norm());
-  if (std::isfinite(node_distance_))
-    return;
-  for (size_t i = 0; i < surface.size(); ++i)
-    for (size_t k = 0; k < i; ++k)
-      node_distance_ = std::min(node_distance_, (parts_.nodes[surface[i]] - parts_.nodes[surface[k]]).norm());
-  if (!std::isfinite(node_distance_))
-    node_distance_ = 1.0;
-}
 
 Eigen::Vector3d ElasticSolid::displacement(const VectorIn& q, int node) const
 {
@@ -178,31 +77,16 @@ Eigen::VectorXd ElasticSolid::rigidVelocity(const Eigen::Vector3d& linear, const
 
 double ElasticSolid::rotation(const VectorIn& q) const
 {
-  const std::vector<Eigen::Vector3d> u = displacements(q);
   double most = 0.0;
-  if (parts_.dimension == 1)
-    return most;
-  for (const std::array<int, 4>& cell : parts_.cells)
-    most = std::max(most, cellRotation(parts_, cell, u).norm());
-  if (!parts_.cells.empty())
-    return most;
-  // The rigid rotation nearest to u (least squares over the nodes).
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  for (size_t i = 0; i < u.size(); ++i)
+  for (Eigen::Index first = 0; first < rotation_.rows(); first += 3)
   {
-    center += parts_.nodes[i] / static_cast<double>(u.size());
-    shift += u[i] / static_cast<double>(u.size());
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k)
+      for (SparseRows::InnerIterator entry(rotation_, first + k); entry; ++entry)
+        turn[k] += entry.value() * q[entry.col()];
+    most = std::max(most, turn.squaredNorm());
   }
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (size_t i = 0; i < u.size(); ++i)
-  {
-    const Eigen::Vector3d arm = parts_.nodes[i] - center;
-    inertia += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
-    moment += arm.cross(u[i] - shift);
-  }
-  return inertia.trace() > 0.0 ? inertia.fullPivLu().solve(moment).norm() : 0.0;
+  return std::sqrt(most);
 }
 
 std::unique_ptr<BodyWork> ElasticSolid::makeWork() const
@@ -284,8 +168,8 @@ void ElasticSolid::prepare(Body& body, double dt) const
   work.has_factor = false;
   const bool is_motion = body.model.regime == Regime::DYNAMIC || dt == 0.0;
   const double of_stiffness = is_motion ? dt * (0.25 * dt + 0.5 * damping_) : dt * dt;
-  // Nothing holds a free body against its rigid motions but its inertia: a proximal term.
-  const double of_mass = is_motion || !is_supported_ ? 1.0 : 0.0;
+  // What K does not hold has nothing against its rigid motions but its inertia: a proximal term.
+  const double of_mass = is_motion || !is_held_ ? 1.0 : 0.0;
   for (Eigen::Index k = 0; k < mass_.nonZeros(); ++k)
     work.matrix.valuePtr()[k] = of_mass * mass_.valuePtr()[k] + of_stiffness * stiffness_.valuePtr()[k];
 }
@@ -362,8 +246,9 @@ double ElasticSolid::kineticEnergy(const Body& body) const
   return 0.5 * v.dot(mass_ * v);
 }
 
-double ElasticSolid::potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const
+double ElasticSolid::potentialEnergy(const Body& body, const Eigen::Vector3d& gravity) const
 {
+  const Eigen::VectorXd& q = body.state.q;
   double energy = 0.5 * q.dot(stiffness_ * q);
   const Eigen::Vector3d pull = body.end.base_pose.linear().transpose() * gravity;
   for (int axis = 0; axis < 3; ++axis)
@@ -385,6 +270,18 @@ std::string ElasticSolid::refusal(const VectorIn& q) const
     return "";
   return "elastic body '" + name_ + "' has turned by " + std::to_string(turned) + " rad, expected at most " +
          std::to_string(MOST_ROTATION) + " rad: linear elasticity in a fixed frame does not hold beyond";
+}
+
+std::string ElasticSolid::wrenchRefusal(const ExternalWrench& wrench) const
+{
+  return wrench.torque.isZero(0.0) ? "" : "found a torque, expected a force alone: nodes do not turn";
+}
+
+std::string ElasticSolid::staticsRefusal() const
+{
+  if (!is_supported_)
+    return "moves freely beside an elastic body, expected bodies with supports alone";
+  return is_held_ ? "" : "can move as a whole in spite of its supports, expected 'fixed' nodes that hold it";
 }
 
 MultibodyModel nodeTree(const std::string& name, const std::vector<Eigen::Vector3d>& nodes,

@@ -1,6 +1,7 @@
 // Gmsh's MSH files, formats 2.2 and 4.1 in ASCII (Gmsh reference manual, "MSH file format").
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -84,7 +85,7 @@ private:
   T take(const std::string& what)
   {
     T value{};
-    if (!(line_ >> value))
+    if (!(line_ >> value) || (!line_.eof() && !std::isspace(line_.peek())))
       fail("'" + line_.str() + "'", what);
     return value;
   }

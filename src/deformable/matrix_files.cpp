@@ -1,5 +1,6 @@
 // Matrices of a finite-element program: Matrix Market (Boisvert, Pozo, Remington 1996) and a table of nodes.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -24,58 +25,118 @@ std::ifstream openFile(const std::string& path, const std::string& expected)
   return file;
 }
 
-SparseRows readMatrixMarket(const std::string& path, Eigen::Index size)
+/** The whole word as a finite number, in C's notation or Fortran's (2.1D+11). */
+bool parseNumber(std::string word, double& value)
 {
-  std::ifstream file = openFile(path, "a Matrix Market file");
-  std::string text;
-  std::getline(file, text);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  std::istringstream head(text);
-  std::string words[5];
-  for (std::string& word : words)
-    head >> word;
-  const bool is_symmetric = words[4] == "symmetric";
-  if (words[0] != "%%matrixmarket" || words[1] != "matrix" || words[2] != "coordinate" ||
-      (words[3] != "real" && words[3] != "integer") || (!is_symmetric && words[4] != "general"))
-    fail(path, 1, "'" + text + "'", "%%MatrixMarket matrix coordinate real general or symmetric");
-  int line = 1;
-  const auto next = [&]
+  std::replace_if(
+      word.begin(), word.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
+  const char* const begin = word.data() + (word.size() > 1 && word[0] == '+' && word[1] != '-' ? 1 : 0);
+  const char* const end = word.data() + word.size();
+  const std::from_chars_result result = std::from_chars(begin, end, value);
+  return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
+}
+
+bool parseNumber(const std::string& word, long& value)
+{
+  const std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
+  return result.ec == std::errc() && result.ptr == word.data() + word.size();
+}
+
+/** Lines of a Matrix Market file, comments left out. */
+class MarketFile
+{
+public:
+  explicit MarketFile(const std::string& path) : path_(path), file_(openFile(path, "a Matrix Market file"))
   {
-    while (std::getline(file, text))
+    std::getline(file_, text_);
+    std::transform(text_.begin(), text_.end(), text_.begin(), [](unsigned char c) { return std::tolower(c); });
+    splitWords();
+    if (words_.size() != 5 || words_[0] != "%%matrixmarket" || words_[1] != "matrix" || words_[2] != "coordinate" ||
+        (words_[3] != "real" && words_[3] != "integer") || (words_[4] != "symmetric" && words_[4] != "general"))
+      fail("%%MatrixMarket matrix coordinate real general or symmetric");
+    is_symmetric_ = words_[4] == "symmetric";
+  }
+
+  bool isSymmetric() const { return is_symmetric_; }
+  const std::vector<std::string>& words() const { return words_; }
+
+  /** The next line that says something, in words. */
+  bool next()
+  {
+    while (std::getline(file_, text_))
     {
-      ++line;
-      if (!text.empty() && text[0] != '%' && text.find_first_not_of(" \t\r") != std::string::npos)
+      ++line_;
+      splitWords();
+      if (!words_.empty() && words_[0][0] != '%')
         return true;
     }
+    text_.clear();
+    words_.clear();
     return false;
-  };
-  long rows = 0;
+  }
+
+  [[noreturn]] void fail(const std::string& expected) const
+  {
+    frictional_contact_sim::fail(path_, line_, "'" + text_ + "'", expected);
+  }
+
+private:
+  void splitWords()
+  {
+    std::istringstream line(text_);
+    words_.clear();
+    for (std::string word; line >> word;)
+      words_.push_back(word);
+    if (!text_.empty() && text_.back() == '\r')
+      text_.pop_back();
+  }
+
+  std::string path_;
+  std::ifstream file_;
+  std::string text_;
+  std::vector<std::string> words_;
+  int line_ = 1;
+  bool is_symmetric_ = false;
+};
+
+/** A symmetric matrix. @param nodes of the table @param rows expected, 0: one to three a node */
+SparseRows readMatrixMarket(const std::string& path, long nodes, long rows)
+{
+  MarketFile file(path);
+  long size = 0;
   long columns = 0;
   long count = 0;
-  if (!next() || !(std::istringstream(text) >> rows >> columns >> count) || count < 0)
-    fail(path, line, "'" + text + "'", "rows, columns, entries");
-  if (rows != size || columns != size)
-    fail(path, line, std::to_string(rows) + " x " + std::to_string(columns),
-         std::to_string(size) + " x " + std::to_string(size) + ", as the table of nodes and the mass matrix say");
+  if (!file.next() || file.words().size() != 3 || !parseNumber(file.words()[0], size) ||
+      !parseNumber(file.words()[1], columns) || !parseNumber(file.words()[2], count) || count < 0)
+    file.fail("rows, columns, entries");
+  if (rows == 0 && (size % nodes != 0 || size / nodes < 1 || size / nodes > 3))
+    file.fail("1, 2 or 3 rows for each of " + std::to_string(nodes) + " nodes");
+  rows = rows == 0 ? size : rows;
+  if (size != rows || columns != rows)
+    file.fail(std::to_string(rows) + " x " + std::to_string(rows) + ", as the table of nodes and the mass matrix say");
   std::vector<Eigen::Triplet<double>> entries;
   for (long k = 0; k < count; ++k)
   {
     long row = 0;
     long column = 0;
     double value = 0.0;
-    if (!next())
-      fail(path, line, std::to_string(k) + " entries", std::to_string(count));
-    if (!(std::istringstream(text) >> row >> column >> value) || row < 1 || column < 1 || row > size || column > size ||
-        !std::isfinite(value))
-      fail(path, line, "'" + text + "'", "row, column, finite value");
+    if (!file.next())
+      fail(path, 0, std::to_string(k) + " entries", std::to_string(count));
+    if (file.words().size() != 3 || !parseNumber(file.words()[0], row) || !parseNumber(file.words()[1], column) ||
+        !parseNumber(file.words()[2], value) || row < 1 || column < 1 || row > rows || column > rows)
+      file.fail("row, column, finite value");
+    if (file.isSymmetric() && column > row)
+      file.fail("row >= column: of a symmetric matrix the file has the lower triangle alone");
     entries.emplace_back(row - 1, column - 1, value);
-    if (is_symmetric && row != column)
+    if (file.isSymmetric() && row != column)
       entries.emplace_back(column - 1, row - 1, value);
   }
-  if (next())
-    fail(path, line, "'" + text + "'", "the end of the file after " + std::to_string(count) + " entries");
-  SparseRows matrix(size, size);
+  if (file.next())
+    file.fail("the end of the file after " + std::to_string(count) + " entries");
+  SparseRows matrix(rows, rows);
   matrix.setFromTriplets(entries.begin(), entries.end());
+  if (matrix.nonZeros() != static_cast<Eigen::Index>(entries.size()))
+    fail(path, 0, "an entry that stands there twice", "every entry once");
   const SparseRows transposed = matrix.transpose();
   const double asymmetry = (matrix - transposed).norm();
   if (asymmetry > 1e-9 * matrix.norm())
@@ -93,19 +154,27 @@ struct NodeTable
 NodeTable readNodes(const std::string& path)
 {
   std::ifstream file = openFile(path, "a table of nodes");
-  const auto cellsOf = [](std::string text)
+  std::string text;
+  const auto next = [&]
   {
-    text.erase(std::remove_if(text.begin(), text.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }),
-               text.end());
+    const bool is_there = static_cast<bool>(std::getline(file, text));
+    text.erase(text.find_last_not_of(" \t\r") + 1);
+    return is_there;
+  };
+  const auto cellsOf = [](const std::string& text)
+  {
     std::vector<std::string> cells;
     std::istringstream line(text);
     for (std::string cell; std::getline(line, cell, ',');)
+    {
+      cell.erase(cell.find_last_not_of(" \t") + 1);
+      cell.erase(0, cell.find_first_not_of(" \t"));
       cells.push_back(cell);
+    }
     return cells;
   };
   static const char* const COLUMNS[] = {"x", "y", "z", "surface", "fixed"};
-  std::string text;
-  std::getline(file, text);
+  next();
   const std::vector<std::string> head = cellsOf(text);
   int place[5];
   for (int k = 0; k < 5; ++k)
@@ -116,7 +185,7 @@ NodeTable readNodes(const std::string& path)
       fail(path, 1, "'" + text + "'", "the columns x, y, z and, where wanted, surface and fixed");
   }
   NodeTable table;
-  for (int line = 2; std::getline(file, text); ++line)
+  for (int line = 2; next(); ++line)
   {
     const std::vector<std::string> cells = cellsOf(text);
     if (cells.empty())
@@ -126,8 +195,7 @@ NodeTable readNodes(const std::string& path)
     {
       if (place[k] < 0)
         continue;
-      std::istringstream cell(place[k] < static_cast<int>(cells.size()) ? cells[place[k]] : "");
-      if (!(cell >> values[k]) || !cell.eof() || !std::isfinite(values[k]))
+      if (place[k] >= static_cast<int>(cells.size()) || !parseNumber(cells[place[k]], values[k]))
         fail(path, line, "'" + text + "'", std::string("a number in column ") + COLUMNS[k]);
       if (k >= 3 && values[k] != 0.0 && values[k] != 1.0)
         fail(path, line, "'" + text + "'", std::string("0 or 1 in column ") + COLUMNS[k]);
@@ -142,38 +210,20 @@ NodeTable readNodes(const std::string& path)
     fail(path, 0, "no node", "a line a node");
   return table;
 }
-
-/** Rows of a Matrix Market file, from its second line. */
-long rowsOf(const std::string& path)
-{
-  std::ifstream file = openFile(path, "a Matrix Market file");
-  long rows = 0;
-  for (std::string text; std::getline(file, text);)
-    if (!text.empty() && text[0] != '%')
-    {
-      std::istringstream(text) >> rows;
-      break;
-    }
-  return rows;
-}
 }  // namespace
 
 ElasticParts readMatrices(const std::string& mass, const std::string& stiffness, const std::string& nodes)
 {
   NodeTable table = readNodes(nodes);
   const auto count = static_cast<long>(table.nodes.size());
-  const long rows = rowsOf(mass);
-  if (rows % count != 0 || rows / count < 1 || rows / count > 3)
-    fail(mass, 0, std::to_string(rows) + " rows for " + std::to_string(count) + " nodes of " + nodes,
-         "1, 2 or 3 a node");
   ElasticParts parts;
-  parts.dimension = static_cast<int>(rows / count);
+  parts.mass = readMatrixMarket(mass, count, 0);
+  parts.stiffness = readMatrixMarket(stiffness, count, parts.mass.rows());
+  parts.dimension = static_cast<int>(parts.mass.rows() / count);
   parts.nodes = std::move(table.nodes);
   parts.surface = std::move(table.surface);
   if (!table.fixed.empty())
     parts.groups["fixed"] = std::move(table.fixed);
-  parts.mass = readMatrixMarket(mass, rows);
-  parts.stiffness = readMatrixMarket(stiffness, rows);
   return parts;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cross_matrix.h"
 #include "link_tree.h"
 
 namespace frictional_contact_sim
@@ -11,13 +12,6 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr double PI = 3.141592653589793;
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& x)
-{
-  Eigen::Matrix3d result;
-  result << 0.0, -x[2], x[1], x[2], 0.0, -x[0], -x[1], x[0], 0.0;
-  return result;
-}
 
 /** exp(s [kappa]x) and its integral over s (Rodrigues); a series where the angle is small. */
 void rotateAlong(const Eigen::Vector3d& kappa, double s, Eigen::Matrix3d& rotation, Eigen::Matrix3d& integral)
@@ -29,7 +23,7 @@ void rotateAlong(const Eigen::Vector3d& kappa, double s, Eigen::Matrix3d& rotati
   const double first = is_small ? s : std::sin(angle) / rate;
   const double second = is_small ? 0.5 * s * s : 2.0 * half * half / (rate * rate);
   const double third = is_small ? s * s * s / 6.0 : (angle - std::sin(angle)) / (rate * rate * rate);
-  const Eigen::Matrix3d turn = cross(kappa);
+  const Eigen::Matrix3d turn = crossMatrix(kappa);
   rotation = Eigen::Matrix3d::Identity() + first * turn + second * turn * turn;
   integral = s * Eigen::Matrix3d::Identity() + second * turn + third * turn * turn;
 }
@@ -59,7 +53,9 @@ void addForce(const SectionJacobian& section, const Eigen::Vector3d& x, const Ei
 
 struct RodWork : BodyWork
 {
-  RodShape shape;
+  RodShape shape;  ///< at the midpoint
+  Eigen::VectorXd state_q;  ///< where state_shape is
+  RodShape state_shape;
   std::vector<SectionJacobian> jacobians;
   Eigen::MatrixXd matrix;
   Eigen::LLT<Eigen::MatrixXd> factor;
@@ -238,12 +234,12 @@ void SuperHelix::prepare(Body& body, double dt) const
     for (int half = 0; half < 2; ++half)
     {
       angular.middleCols<3>(first) += turn;
-      linear.middleCols<3>(first) += cross(x) * turn;
+      linear.middleCols<3>(first) += crossMatrix(x) * turn;
       if (half == 0)
         work.jacobians[j] = {angular, linear};
     }
     const SectionJacobian& jacobian = work.jacobians[j];
-    const Eigen::Matrix3Xd at_point = jacobian.linear - cross(x) * jacobian.angular;
+    const Eigen::Matrix3Xd at_point = jacobian.linear - crossMatrix(x) * jacobian.angular;
     const Eigen::RowVectorXd spin = frame.col(0).transpose() * jacobian.angular;
     work.matrix += line_mass_ * at_point.transpose() * at_point;
     work.matrix += spin_inertia_ * (jacobian.angular.transpose() * jacobian.angular + spin.transpose() * spin);
@@ -298,19 +294,50 @@ void SuperHelix::computeBias(const Body& body, const Eigen::VectorXd& v, const E
   }
 }
 
-void SuperHelix::applyWrenches(Body& body, double) const
+void SuperHelix::applyWrenches(Body& body, double now) const
 {
-  if (body.model.regime != Regime::DYNAMIC)
-    return;
   const RodWork& work = workOf(body);
-  const Eigen::Vector3d force = -line_mass_ * (body.middle.base_pose.linear().transpose() * body.base_rate.linear);
-  for (size_t j = 0; j < work.shape.points.size(); ++j)
-    addForce(work.jacobians[j], work.shape.points[j], force, Eigen::Vector3d::Zero(), body.external);
+  const Eigen::Matrix3d from_world = body.middle.base_pose.linear().transpose();
+  if (body.model.regime == Regime::DYNAMIC)
+  {
+    const Eigen::Vector3d force = -line_mass_ * (from_world * body.base_rate.linear);
+    for (size_t j = 0; j < work.shape.points.size(); ++j)
+      addForce(work.jacobians[j], work.shape.points[j], force, Eigen::Vector3d::Zero(), body.external);
+  }
+  for (const ExternalWrench& wrench : body.state.wrenches)
+  {
+    if (now < wrench.from || now >= wrench.until)
+      continue;
+    const double last = static_cast<double>(work.shape.points.size()) - 1.0;
+    const double section = std::clamp(std::floor(wrench.point.x() / step_), 0.0, last);
+    const auto j = static_cast<size_t>(section);
+    const Eigen::Vector3d arm(wrench.point.x() - (section + 0.5) * step_, wrench.point.y(), wrench.point.z());
+    const Eigen::Matrix3d axes = wrench.world_frame ? from_world : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+    addForce(work.jacobians[j], work.shape.points[j] + work.shape.frames[j] * arm, axes * wrench.force,
+             axes * wrench.torque, body.external);
+  }
+}
+
+std::string SuperHelix::staticsRefusal() const
+{
+  return "is a rod, whose equilibrium is more than one linear step away, expected none";
+}
+
+/** The shape at the state, of which both energies ask. */
+const RodShape& SuperHelix::shapeOfState(const Body& body) const
+{
+  auto& work = static_cast<RodWork&>(*body.work);
+  if (work.state_q.size() == 0 || work.state_q != body.state.q)
+  {
+    work.state_q = body.state.q;
+    work.state_shape = shapeAt(body.state.q);
+  }
+  return work.state_shape;
 }
 
 double SuperHelix::kineticEnergy(const Body& body) const
 {
-  const RodShape shape = shapeAt(body.state.q);
+  const RodShape& shape = shapeOfState(body);
   const Motion motion = motionOf(shape, body.state.v);
   double energy = 0.0;
   for (size_t j = 0; j < shape.points.size(); ++j)
@@ -322,11 +349,12 @@ double SuperHelix::kineticEnergy(const Body& body) const
   return energy;
 }
 
-double SuperHelix::potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const
+double SuperHelix::potentialEnergy(const Body& body, const Eigen::Vector3d& gravity) const
 {
+  const Eigen::VectorXd& q = body.state.q;
   double energy = 0.5 * q.dot(stiffness_.cwiseProduct(q));
   const Eigen::Vector3d pull = body.end.base_pose.linear().transpose() * gravity;
-  for (const Eigen::Vector3d& point : shapeAt(q).points)
+  for (const Eigen::Vector3d& point : shapeOfState(body).points)
     energy -= line_mass_ * pull.dot(point);
   return energy;
 }

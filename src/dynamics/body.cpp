@@ -202,7 +202,7 @@ double kineticEnergy(const Body& body)
 
 double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity)
 {
-  return body.model.solid ? body.model.solid->potentialEnergy(body, body.state.q, gravity)
+  return body.model.solid ? body.model.solid->potentialEnergy(body, gravity)
                           : potentialEnergy(body.model.tree, body.end, gravity) + springEnergy(body);
 }
 
@@ -249,6 +249,12 @@ void moveToEnd(Body& body, const VectorIn& v, double dt)
 
 void computeBias(Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity, Eigen::VectorXd& bias)
 {
+  if (body.model.regime != Regime::DYNAMIC && !v.isZero(0.0))
+  {
+    // v is a displacement over dt there: it has no centrifugal forces.
+    computeBias(body, Eigen::VectorXd::Zero(v.size()), gravity, bias);
+    return;
+  }
   if (body.model.solid)
     body.model.solid->computeBias(body, v, gravity, bias);
   else if (body.model.free_link)
@@ -313,6 +319,14 @@ void applyWrenches(Body& body, double now)
     addWrench(body.model.tree, body.middle, frame.link, pose * wrench.point, axes * wrench.force, axes * wrench.torque,
               body.external);
   }
+}
+
+std::string wrenchRefusal(const BodyModel& model, const ExternalWrench& wrench)
+{
+  if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite() || std::isnan(wrench.from) ||
+      std::isnan(wrench.until))
+    return "found a number that is not finite, expected finite ones";
+  return model.solid ? model.solid->wrenchRefusal(wrench) : "";
 }
 
 void removeExpiredWrenches(Body& body, double now)

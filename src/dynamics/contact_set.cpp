@@ -141,6 +141,8 @@ double ContactSet::normalSpeed(const ContactPoint& point, Motion motion) const
 
 bool ContactSet::mayClose(const StepContext& context, const ContactPoint& point) const
 {
+  if (context.balance)
+    return point.gap <= CONTACT_GAP;
   if (point.gap <= CONTACT_GAP || context.normal_law.form == ContactLawForm::VELOCITY || carriedBefore(point.id))
     return true;
   const double start = normalSpeed(point, Motion::START);

@@ -130,6 +130,8 @@ void DelassusReduction::analyse(const IncrementalProblem& problem)
   const size_t count = problem.laws.size();
   storePattern(problem.H, h_outer_, h_inner_);
   storePattern(problem.G, g_outer_, g_inner_);
+  h_values_.clear();
+  is_fresh_.assign(count, 1);
   types_.resize(count);
   block_offset_.assign(count + 1, 0);
   pattern_begin_.assign(count + 1, 0);

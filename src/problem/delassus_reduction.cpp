@@ -87,10 +87,28 @@ constexpr MultiplyRows MULTIPLY[3][3] = {{multiplyRows<1, 1>, multiplyRows<1, 2>
                                          {multiplyRows<3, 1>, multiplyRows<3, 2>, multiplyRows<3, 3>}};
 }  // namespace
 
+void DelassusReduction::findFresh(const IncrementalProblem& problem)
+{
+  const double* const values = problem.H.valuePtr();
+  const int* const columns = problem.H.innerIndexPtr();
+  for (size_t i = 0; i < types_.size() && loop_of_.empty() && !h_values_.empty(); ++i)
+  {
+    const auto begin = static_cast<std::ptrdiff_t>(h_outer_[static_cast<size_t>(block_offset_[i])]);
+    const auto end = static_cast<std::ptrdiff_t>(h_outer_[static_cast<size_t>(block_offset_[i + 1])]);
+    is_fresh_[i] = !std::equal(values + begin, values + end, h_values_.begin() + begin) ||
+                   std::any_of(columns + begin, columns + end,
+                               [this](int column) { return factor_.hasChanged(factor_.permuted(column)); });
+  }
+  h_values_.assign(values, values + problem.H.nonZeros());
+}
+
 void DelassusReduction::computeHalfRows(const IncrementalProblem& problem)
 {
+  findFresh(problem);
   for (size_t i = 0; i < types_.size(); ++i)
   {
+    if (is_fresh_[i] == 0)
+      continue;
     const int* pattern = pattern_.data() + pattern_begin_[i];
     const int count = pattern_begin_[i + 1] - pattern_begin_[i];
     double* result = half_rows_.data() + value_begin_[i];
@@ -126,6 +144,8 @@ void DelassusReduction::multiplyPairs()
   {
     const auto i = static_cast<size_t>(pair.i);
     const auto j = static_cast<size_t>(pair.j);
+    if (is_fresh_[i] == 0 && is_fresh_[j] == 0)
+      continue;
     MULTIPLY[block_offset_[i + 1] - block_offset_[i] - 1][block_offset_[j + 1] - block_offset_[j] - 1](
         pattern_.data() + pattern_begin_[i], pattern_.data() + pattern_begin_[i + 1],
         half_rows_.data() + value_begin_[i], pattern_.data() + pattern_begin_[j],

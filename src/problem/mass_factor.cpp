@@ -59,7 +59,65 @@ void MassFactor::analyse(const SparseRows& M)
   row_indices_.resize(fill);
   values_.resize(fill);
   pivots_.resize(count);
-  work_.resize(count);
+  work_.assign(count, 0.0);
+  root_.resize(count);
+  for (size_t k = count; k-- > 0;)
+    root_[k] = parent_[k] < 0 ? static_cast<int>(k) : root_[static_cast<size_t>(parent_[k])];
+  factored_.clear();
+  changed_.assign(count, 1);
+}
+
+void MassFactor::findChanges(const SparseRows& M)
+{
+  const double* const values = M.valuePtr();
+  if (!factored_.empty())
+    std::fill(changed_.begin(), changed_.end(), 0);
+  for (size_t row = 0; row < root_.size() && !factored_.empty(); ++row)
+    if (!std::equal(values + outer_[row], values + outer_[row + 1], factored_.begin() + outer_[row]))
+      changed_[static_cast<size_t>(root_[static_cast<size_t>(inverse_permutation_[row])])] = 1;
+  factored_.assign(values, values + M.nonZeros());
+}
+
+void MassFactor::factorRow(int k)
+{
+  // Pattern of row k of L in topological order: paths of the elimination tree from the entries of M.
+  const auto size = static_cast<int>(parent_.size());
+  const auto row = static_cast<size_t>(permutation_[static_cast<size_t>(k)]);
+  int top = size;
+  flags_[static_cast<size_t>(k)] = k;
+  counts_[static_cast<size_t>(k)] = 0;
+  for (auto p = static_cast<size_t>(outer_[row]); p < static_cast<size_t>(outer_[row + 1]); ++p)
+  {
+    int i = inverse_permutation_[static_cast<size_t>(inner_[p])];
+    if (i > k)
+      continue;
+    work_[static_cast<size_t>(i)] += factored_[p];
+    int length = 0;
+    for (; flags_[static_cast<size_t>(i)] != k; i = parent_[static_cast<size_t>(i)])
+    {
+      pattern_[static_cast<size_t>(length++)] = i;
+      flags_[static_cast<size_t>(i)] = k;
+    }
+    while (length > 0)
+      pattern_[static_cast<size_t>(--top)] = pattern_[static_cast<size_t>(--length)];
+  }
+  double pivot = work_[static_cast<size_t>(k)];
+  work_[static_cast<size_t>(k)] = 0.0;
+  for (; top < size; ++top)
+  {
+    const auto i = static_cast<size_t>(pattern_[static_cast<size_t>(top)]);
+    const double value = work_[i];
+    work_[i] = 0.0;
+    const auto end = static_cast<size_t>(column_begin_[i] + counts_[i]);
+    for (auto p = static_cast<size_t>(column_begin_[i]); p < end; ++p)
+      work_[static_cast<size_t>(row_indices_[p])] -= values_[p] * value;
+    const double entry = value / pivots_[i];
+    pivot -= entry * value;
+    row_indices_[end] = k;
+    values_[end] = entry;
+    ++counts_[i];
+  }
+  pivots_[static_cast<size_t>(k)] = pivot;
 }
 
 bool MassFactor::compute(const SparseRows& M)
@@ -70,14 +128,13 @@ bool MassFactor::compute(const SparseRows& M)
   const int size = static_cast<int>(M.rows());
   if (size == 0)
     return is_new;
-  // LDL's interface is not const-correct; it only reads the matrix.
-  const int done =
-      ldl_numeric(size, outer_.data(), inner_.data(), const_cast<double*>(M.valuePtr()), column_begin_.data(),
-                  parent_.data(), counts_.data(), row_indices_.data(), values_.data(), pivots_.data(), work_.data(),
-                  pattern_.data(), flags_.data(), permutation_.data(), inverse_permutation_.data());
+  findChanges(M);
   for (int k = 0; k < size; ++k)
   {
-    const double pivot = k < done ? pivots_[static_cast<size_t>(k)] : 0.0;
+    if (!hasChanged(k))
+      continue;
+    factorRow(k);
+    const double pivot = pivots_[static_cast<size_t>(k)];
     if (!(pivot > 0.0) || !std::isfinite(pivot))
     {
       outer_.clear();

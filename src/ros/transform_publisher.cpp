@@ -29,14 +29,10 @@ bool TransformPublisher::isChosen(int body, int frame) const
   return is_root ? choice_.bases && names_.frames[body][frame] != WORLD_FRAME : choice_.links;
 }
 
-/** @brief Whether it never moves relative to its parent. */
-bool TransformPublisher::isStatic(int body, int frame) const
+bool isStatic(const BodyModel& body, int frame)
 {
-  const MultibodyModel& model = simulator_.model(body);
-  const Frame& child = model.frames[frame];
-  if (child.parent >= 0)
-    return model.frames[child.parent].link == child.link;
-  return model.joints.front().type == JointType::FIXED && !simulator_.workspace(body).model.base_motion.active;
+  const Frame& child = body.tree.frames[frame];
+  return child.parent >= 0 ? body.tree.frames[child.parent].link == child.link : body.isFixed(child.link);
 }
 
 void TransformPublisher::append(int body, int frame, const ros::Time& stamp,
@@ -60,7 +56,7 @@ const std::vector<geometry_msgs::TransformStamped>& TransformPublisher::moving(c
   moving_.clear();
   for (int body = 0; body < simulator_.bodyCount(); ++body)
     for (int frame = 0; frame < static_cast<int>(names_.frames[body].size()); ++frame)
-      if (isChosen(body, frame) && !isStatic(body, frame))
+      if (isChosen(body, frame) && !isStatic(simulator_.workspace(body).model, frame))
         append(body, frame, stamp, moving_);
   return moving_;
 }
@@ -76,7 +72,7 @@ void TransformPublisher::sendStatic(const ros::Time& stamp, const std::vector<ge
   std::vector<geometry_msgs::TransformStamped> transforms;
   for (int body = 0; body < simulator_.bodyCount(); ++body)
     for (int frame = 0; frame < static_cast<int>(names_.frames[body].size()); ++frame)
-      if (isChosen(body, frame) && isStatic(body, frame))
+      if (isChosen(body, frame) && isStatic(simulator_.workspace(body).model, frame))
         append(body, frame, stamp, transforms);
   transforms.insert(transforms.end(), others.begin(), others.end());
   for (geometry_msgs::TransformStamped& transform : transforms)

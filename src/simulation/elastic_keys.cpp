@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "frictional_contact_sim/config/number_range.h"
 #include "frictional_contact_sim/deformable/elastic_spec.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
-constexpr int MOST_CELLS = 1000000;  ///< along one side
+constexpr int MOST_CELLS = 100000;  ///< of a body: a gigabyte or two while its matrices are assembled
+constexpr int MOST_COLUMNS = 2000000;  ///< of the Jacobians of a rod's sections, three numbers twice each: 0.3 GB
 
 /** Those of all bodies that this one has too. */
 ConfigKeys sharedKeys(BodySpec& body, const std::vector<std::string>& names)
@@ -47,6 +49,12 @@ void checkSource(const ConfigNode& node, const ElasticSpec& spec)
   const size_t sides = node.has("bar") ? 1 : spec.box.size();
   if (is_built_in && spec.cells.size() != sides)
     node.at("cells").failExpecting(std::to_string(sides) + (sides == 1 ? " number" : " numbers") + ", one a size");
+  double cells = 1.0;
+  for (const int along : spec.cells)
+    cells *= along;
+  if (cells > MOST_CELLS)
+    node.at("cells").fail("found " + numberText(cells) + " cells in all, expected at most " +
+                          std::to_string(MOST_CELLS));
   for (const char* const part : {"mass", "stiffness", "nodes"})
     if (is_matrices && !node.has(part))
       node.at(part).failExpecting("a file: mass, stiffness and nodes belong together");
@@ -111,6 +119,9 @@ RodSpec readRod(const ConfigNode& node)
                 key("start", [&](const ConfigNode& value) { rod.start = readCurvatures(value, rod.pieces); })});
   if (!(rod.length / (rod.pieces * rod.sections) > 0.0))
     node.at("length").failExpecting("sections of some length");
+  if (const double columns = static_cast<double>(rod.pieces) * rod.pieces * rod.sections; columns > MOST_COLUMNS)
+    node.at("pieces").fail("found " + std::to_string(rod.pieces) + " pieces of " + std::to_string(rod.sections) +
+                           " sections, expected pieces^2 sections of at most " + std::to_string(MOST_COLUMNS));
   return rod;
 }
 }  // namespace
@@ -124,7 +135,7 @@ ConfigKeys rodBodyKeys(BodySpec& body)
                                     spec.rod = readRod(node);
                                     body.elastic = std::make_shared<ElasticSpec>(spec);
                                   }))};
-  return keys + sharedKeys(body, {"pose", "motion", "material"});
+  return keys + sharedKeys(body, {"pose", "wrenches", "motion", "material"});
 }
 
 ConfigKeys elasticBodyKeys(BodySpec& body)

@@ -17,6 +17,19 @@ constexpr double DROP_HEIGHT = 0.001;  ///< lowest node above the ground where n
   throw std::invalid_argument("body '" + spec.name + "': " + message);
 }
 
+void setWrenches(const BodySpec& spec, const Draft& body)
+{
+  for (ExternalWrench wrench : spec.wrenches)
+  {
+    if (wrench.link != spec.name)
+      fail(spec, "wrenches names the link '" + wrench.link + "', expected the body's own name");
+    if (const std::string reason = wrenchRefusal(body.model, wrench); !reason.empty())
+      fail(spec, "wrenches: " + reason);
+    wrench.frame = 0;
+    body.state.wrenches.push_back(wrench);
+  }
+}
+
 /** A clamped rod: its shape at the start, and how its root is moved. */
 void setRodState(const BodySpec& spec, const Draft& body)
 {
@@ -48,6 +61,7 @@ BodyModel loadElastic(const BodySpec& spec)
 void setElasticState(const BodySpec& spec, const Draft& body)
 {
   body.state.base_pose = spec.pose.value_or(Eigen::Isometry3d::Identity());
+  setWrenches(spec, body);
   if (spec.elastic->rod)
   {
     setRodState(spec, body);
@@ -59,15 +73,6 @@ void setElasticState(const BodySpec& spec, const Draft& body)
   if (is_moving && solid.isSupported())
     fail(spec, "velocity is for a body without supports; one with 'fixed' nodes takes 'motion'");
   body.state.v = solid.rigidVelocity(back * spec.linear_velocity, back * spec.angular_velocity);
-  for (ExternalWrench wrench : spec.wrenches)
-  {
-    if (wrench.link != spec.name)
-      fail(spec, "wrenches names the link '" + wrench.link + "', expected the body's own name");
-    if (!wrench.torque.isZero())
-      fail(spec, "wrenches has a torque, expected a force alone: nodes do not turn");
-    wrench.frame = 0;
-    body.state.wrenches.push_back(wrench);
-  }
   if (!spec.motion)
     return;
   if (!solid.isSupported())
@@ -86,7 +91,7 @@ void placeElastic(const BodySpec& spec, const Draft& body, WorldModel& world)
   world.collision.setPoses(handle, moved.end);
   const double lowest = world.collision.lowestPoint(handle);
   const double ground = world.scenario.ground ? world.scenario.ground->height : 0.0;
-  if (!spec.pose && !body.model.solid->isSupported())
+  if (!spec.pose && !body.model.solid->isSupported() && std::isfinite(lowest))
   {
     body.state.base_pose.translation().z() += ground + DROP_HEIGHT - lowest;
     updateEnd(moved);

@@ -49,6 +49,9 @@ std::pair<int, int> findSide(const WorldModel& world, const LoopSpec& loop, cons
   if (body < 0)
     throw std::invalid_argument(label + ": found body '" + side.body + "', " + didYouMean(side.body, names) +
                                 "expected world or one of " + joinNames(names));
+  if (world.bodies[static_cast<size_t>(body)].solid)
+    throw std::invalid_argument(label + ": body '" + side.body +
+                                "' is deformable, expected a rigid one: loops join rigid links");
   const MultibodyModel& tree = world.bodies[static_cast<size_t>(body)].tree;
   const int frame = tree.findFrame(side.link);
   if (frame >= 0)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <exception>
 
+#include "frictional_contact_sim/config/number_range.h"
+#include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/simulation/state_archive.h"
@@ -33,6 +35,8 @@ void checkWelds(const Simulator& simulator, const SimulationState& state)
     if (body < 0 || body >= simulator.bodyCount())
       throw StateError("the body of a weld is " + std::to_string(body) + ", expected 0 to " +
                        std::to_string(simulator.bodyCount() - 1));
+    if (simulator.workspace(body).model.solid)
+      throw StateError("the body of a weld is " + std::to_string(body) + ", which is deformable, expected a rigid one");
     const int frames = static_cast<int>(simulator.model(body).frames.size());
     if (frame < 0 || frame >= frames)
       throw StateError("the link of a weld is " + std::to_string(frame) + ", expected 0 to " +
@@ -71,21 +75,41 @@ void checkDrives(const WorldModel& world, const SimulationState& state)
     }
 }
 
+/** Why q and v cannot be a body's; empty where they can. */
+std::string motionFault(const BodyModel& model, const BodyState& state)
+{
+  if (!state.q.allFinite() || !state.v.allFinite())
+    return "its position or velocity is not finite";
+  if (model.regime != Regime::DYNAMIC && !state.v.isZero(0.0))
+    return "it has a velocity, expected none where every step is an equilibrium";
+  return "";
+}
+
 /** What the sizes do not say of a state from outside. */
 void checkNumbers(const Simulator& simulator, const SimulationState& state)
 {
   if (!(state.dt > 0.0) || !std::isfinite(state.dt) || !std::isfinite(state.time()))
     throw StateError("dt or the time is not a finite number > 0");
+  if (!(state.wedged.overlap >= 0.0 && state.wedged.overlap <= CONTACT_GAP))
+    throw StateError("wedged.overlap is " + numberText(state.wedged.overlap) + ", expected 0 to " +
+                     numberText(CONTACT_GAP) + " m");
   for (size_t b = 0; b < state.bodies.size(); ++b)
   {
     const BodyState& body = state.bodies[b];
-    if (!body.q.allFinite() || !body.v.allFinite() || !body.base_pose.matrix().allFinite())
-      throw StateError("the position or velocity of body " + std::to_string(b) + " is not finite");
-    const int frames = static_cast<int>(simulator.model(static_cast<int>(b)).frames.size());
+    const BodyModel& model = simulator.workspace(static_cast<int>(b)).model;
+    if (const std::string fault = motionFault(model, body); !fault.empty())
+      throw StateError("body '" + model.name + "': " + fault);
+    if (!body.base_pose.matrix().allFinite())
+      throw StateError("body '" + model.name + "': the pose of its base is not finite");
+    const int frames = static_cast<int>(model.tree.frames.size());
     for (const ExternalWrench& wrench : body.wrenches)
+    {
       if (wrench.frame < 0 || wrench.frame >= frames)
         throw StateError("wrench.frame is " + std::to_string(wrench.frame) + ", expected 0 to " +
                          std::to_string(frames - 1));
+      if (const std::string reason = wrenchRefusal(model, wrench); !reason.empty())
+        throw StateError("a wrench on body '" + model.name + "': " + reason);
+    }
   }
   const auto checkShapes = [&](const char* of, int shape_a, int shape_b)
   {
@@ -118,13 +142,14 @@ void Simulator::Impl::applyState()
   is_solved = false;
   solver.begin();
   const SimulationState before = state;
-  if (const Body* body = findNotFinite())
-  {
-    fail(SolverStatus::NUMERICAL_FAILURE, "body '" + body->model.name + "': its position or velocity is not finite");
-    storeOutcome();
-    goBack(before);
-    return;
-  }
+  for (const Body& body : bodies)
+    if (const std::string fault = motionFault(body.model, body.state); !fault.empty())
+    {
+      fail(SolverStatus::NUMERICAL_FAILURE, "body '" + body.model.name + "': " + fault);
+      storeOutcome();
+      goBack(before);
+      return;
+    }
   state.rows.contacts.clear();
   for (RowMemory& memory : state.rows.memory)
     std::fill(memory.impulses.begin(), memory.impulses.end(), 0.0);
@@ -142,14 +167,6 @@ void Simulator::Impl::applyState()
     goBack(before);
   else
     rememberGood();
-}
-
-const Body* Simulator::Impl::findNotFinite() const
-{
-  for (const Body& body : bodies)
-    if (!body.state.q.allFinite() || !body.state.v.allFinite())
-      return &body;
-  return nullptr;
 }
 
 /** All of it as it was before q and v were written. */

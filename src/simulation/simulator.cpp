@@ -12,16 +12,12 @@
 
 namespace frictional_contact_sim
 {
-bool findsEquilibrium(const WorldModel& world)
-{
-  return world.scenario.regime == Regime::STATIC &&
-         std::none_of(
-             world.bodies.begin(), world.bodies.end(), [](const BodyModel& body) { return body.solid; });
-}
-
 StepContext makeContext(const Scenario& scenario)
 {
   StepContext context;
+  context.balance =
+      scenario.regime == Regime::STATIC &&
+      std::none_of(scenario.bodies.begin(), scenario.bodies.end(), [](const BodySpec& body) { return body.elastic; });
   context.dt = scenario.time_step;
   context.gravity = scenario.gravity;
   context.regime = scenario.regime;
@@ -294,9 +290,8 @@ void Simulator::addWrench(int body, const ExternalWrench& wrench)
   const int frame = model.tree.findFrame(wrench.link);
   if (frame < 0)
     throw std::invalid_argument("body '" + model.name + "' has no link '" + wrench.link + "'");
-  if (!wrench.force.allFinite() || !wrench.torque.allFinite() || !wrench.point.allFinite() || std::isnan(wrench.from) ||
-      std::isnan(wrench.until))
-    throw std::invalid_argument("wrench on link '" + wrench.link + "' has a number that is not finite");
+  if (const std::string reason = wrenchRefusal(model, wrench); !reason.empty())
+    throw std::invalid_argument("wrench on link '" + wrench.link + "' of body '" + model.name + "': " + reason);
   impl_->state.bodies[body].wrenches.push_back(wrench);
   impl_->state.bodies[body].wrenches.back().frame = frame;
 }

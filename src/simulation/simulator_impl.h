@@ -18,9 +18,6 @@ namespace frictional_contact_sim
 /** What a step is told by a scenario. */
 StepContext makeContext(const Scenario& scenario);
 
-/** Statics of rigid bodies: whether forces balance the loads, in place of a step. */
-bool findsEquilibrium(const WorldModel& world);
-
 struct Simulator::Impl
 {
   explicit Impl(std::shared_ptr<const WorldModel> world_model);
@@ -62,7 +59,6 @@ struct Simulator::Impl
   void applyState();
   void weld(const Closure& weld);
   void joinWelded();  ///< tells the collision world which shapes are one rigid thing, after the list of welds changed
-  const Body* findNotFinite() const;
   void goBack(const SimulationState& before);
   void setStart();
   void impactSolve();

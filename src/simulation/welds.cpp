@@ -38,6 +38,9 @@ Side findSide(const std::vector<Body>& bodies, const LinkRef& ref)
     throw std::invalid_argument("there is no body " + std::to_string(ref.body) + ", expected less than " +
                                 std::to_string(bodies.size()));
   const BodyModel& model = bodies[static_cast<size_t>(ref.body)].model;
+  if (model.solid)
+    throw std::invalid_argument("body '" + model.name +
+                                "' is deformable, expected a rigid one: welds join rigid links");
   const Side side{ref.body, model.tree.findFrame(ref.link)};
   if (side.frame >= 0)
     return side;
@@ -64,7 +67,7 @@ public:
     sets_.reset(count);
     for (size_t b = 0; b < bodies.size(); ++b)
       for (size_t link = 0; link < bodies[b].model.tree.links.size(); ++link)
-        if (bodies[b].model.chains[link].empty() && !bodies[b].model.base_motion.active)
+        if (bodies[b].model.isFixed(static_cast<int>(link)))
           sets_.unite(0, first_[b] + static_cast<int>(link));
   }
   int number(int body, int link)

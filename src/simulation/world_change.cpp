@@ -3,6 +3,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "elastic_overlap.h"
 #include "frictional_contact_sim/config/nearest_name.h"
 #include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
@@ -210,6 +211,9 @@ bool Simulator::Impl::checkPlace(int body)
   const std::vector<std::string> overlaps = findOverlaps(*world, collision, body);
   if (!overlaps.empty())
     throw std::invalid_argument(overlaps.front() + ", expected a free place");
+  const std::vector<ElasticOverlap> inside = findElasticOverlaps(*world, state.bodies, body);
+  if (!inside.empty())
+    throw std::invalid_argument(inside.front().line + ", expected a free place");
   const std::vector<ContactPoint>& points = collision.detect(CONTACT_GAP);
   return std::any_of(
       points.begin(), points.end(),

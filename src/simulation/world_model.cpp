@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "body_loading.h"
+#include "elastic_overlap.h"
 #include "loops.h"
 #include "start_check.h"
 
@@ -53,18 +54,30 @@ void checkScenario(const Scenario& scenario)
   scenario.stopping.validate();
 }
 
-/** What one equilibrium can be asked of. */
-void checkStatics(const WorldModel& world)
+/** What steps from rest to rest, and one equilibrium, can be asked of. */
+void checkRegime(const WorldModel& world)
 {
-  if (world.scenario.regime != Regime::STATIC)
+  if (world.scenario.regime == Regime::DYNAMIC)
     return;
-  const auto isSolid = [](const BodyModel& body) { return body.solid != nullptr; };
-  const bool has_solid = std::any_of(world.bodies.begin(), world.bodies.end(), isSolid);
-  for (const BodyModel& body : world.bodies)
-    if (has_solid && body.nv > 0 && (!body.solid || !body.solid->isSupported()))
+  const bool is_static = world.scenario.regime == Regime::STATIC;
+  const bool has_solid = std::any_of(world.bodies.begin(), world.bodies.end(),
+                                     [](const BodyModel& body) { return body.solid != nullptr; });
+  for (size_t b = 0; b < world.bodies.size(); ++b)
+  {
+    const BodyModel& body = world.bodies[b];
+    if (!world.start[b].v.isZero(0.0))
       throw std::invalid_argument("body '" + body.name +
-                                  "' moves freely beside an elastic body, expected bodies with supports alone in a "
-                                  "scenario that is static: quasi_static: true takes it");
+                                  "' has a velocity at the start, expected none in a scenario that is " +
+                                  (is_static ? "static" : "quasi_static") + ": nothing has inertia there");
+    std::string reason;
+    if (is_static && body.solid)
+      reason = body.solid->staticsRefusal();
+    else if (is_static && has_solid && body.nv > 0)
+      reason = "moves freely beside an elastic body, expected bodies with supports alone";
+    if (!reason.empty())
+      throw std::invalid_argument("body '" + body.name + "' " + reason +
+                                  " in a scenario that is static: quasi_static: true takes it");
+  }
 }
 
 void addDraft(const BodySpec& spec, WorldModel& world)
@@ -80,6 +93,17 @@ void disableOverlaps(WorldModel& world, int body = -1)
 {
   for (const std::string& pair : world.collision.disableOverlaps(body))
     world.warnings.push_back("links overlap at the start and will not collide: " + pair);
+}
+
+/** @throws std::invalid_argument where contacts do not reach */
+void warnOfElasticOverlaps(WorldModel& world)
+{
+  for (const ElasticOverlap& overlap : findElasticOverlaps(world, world.start))
+  {
+    if (!overlap.is_let_out)
+      throw std::invalid_argument(overlap.line + ", expected less than a cell: contacts know nothing deeper");
+    world.warnings.push_back(overlap.line + ": it is let out slowly");
+  }
 }
 
 void judgeInertia(WorldModel& world, size_t body)
@@ -125,9 +149,10 @@ std::shared_ptr<const WorldModel> loadWorldModel(const Scenario& scenario)
   disableOverlaps(*world);
   for (size_t b = 0; b < world->bodies.size(); ++b)
     judgeInertia(*world, b);
+  warnOfElasticOverlaps(*world);
   for (const std::string& line : findOverlaps(*world, world->collision))
     world->warnings.push_back(line + ": it is let out slowly");
-  checkStatics(*world);
+  checkRegime(*world);
   setPairs(*world);
   world->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return world;
@@ -149,6 +174,7 @@ std::shared_ptr<const WorldModel> withBody(const WorldModel& world, const Scenar
   next->collision.putStaticLast();
   disableOverlaps(*next, static_cast<int>(body));
   judgeInertia(*next, body);
+  checkRegime(*next);
   setPairs(*next);
   next->loading_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return next;

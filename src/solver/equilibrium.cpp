@@ -77,6 +77,7 @@ Equilibrium findEquilibrium(const IncrementalProblem& problem, double tolerance)
   {
     result.solution.v.setZero();
     result.solution.u.setZero();
+    result.residual = evaluateResidual(still, result.solution).value();
     return result;
   }
   result.reach = reachOf(still, result.solution.u);

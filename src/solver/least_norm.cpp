@@ -15,9 +15,11 @@ namespace
 /// Rows whose remainder in the factor of A A^T is below this are combinations of the others. Far above the round-off of
 /// W, which other rows that nearly depend on each other magnify: to look at an independent island costs time, no more.
 constexpr double RANK_TOLERANCE = 1e-9;
-/// The cubic test pays up to here; larger islands are looked at as if they were dependent. One that is not keeps its
-/// r*.
+/// The cubic test pays up to here, and where rows are so many times fewer than the velocities they touch: nodes of an
+/// elastic mesh, whose search is cubic in velocities. Other islands are looked at as if they were dependent. One that
+/// is not keeps its r*.
 constexpr int GRAM_ROWS = 96;
+constexpr size_t GRAM_VELOCITIES = 4;
 /// As RANK_TOLERANCE, of the velocities that only one law touches; a stricter one, since this is only a shortcut.
 constexpr double OWN_TOLERANCE = 1e-6;
 
@@ -267,15 +269,16 @@ bool LeastNorm::isDependent(const DelassusReduction& reduction, size_t first, si
     }
   if (kept_.empty())
     return false;
-  if (rows > GRAM_ROWS || reduction.problem().W.isMatrixFree())
+  const bool is_cheap = rows <= GRAM_ROWS || GRAM_VELOCITIES * static_cast<size_t>(rows) <= used_.size();
+  if (!is_cheap || reduction.problem().W.isMatrixFree())
     return true;
   fillGram(reduction, rows);
-  double least[GRAM_ROWS];
-  int row = 0;
+  size_t row = gram_.size();
+  gram_.resize(row + static_cast<size_t>(rows));  // least pivots behind it
   for (const int k : kept_)
     for (int a = 0; a < members_[static_cast<size_t>(k)].rows; ++a)
-      least[row++] = RANK_TOLERANCE / reduction.stepLengths()[members_[static_cast<size_t>(k)].law];
-  return isSingular(gram_.data(), rows, least);
+      gram_[row++] = RANK_TOLERANCE / reduction.stepLengths()[members_[static_cast<size_t>(k)].law];
+  return isSingular(gram_.data(), rows, gram_.data() + static_cast<size_t>(rows) * static_cast<size_t>(rows));
 }
 
 /** The island in scaled impulses. */
@@ -323,25 +326,26 @@ void LeastNorm::scatter(const DelassusReduction& reduction, size_t first, size_t
 void LeastNorm::improveIsland(const DelassusReduction& reduction, size_t first, size_t last, Solution& solution,
                               Report& report)
 {
-  if (!isDependent(reduction, first, last))
-    return;
   findVelocities(reduction, first, last);
-  int rows = 0;
-  for (size_t k = first; k < last; ++k)
-    rows += member(k).rows;
-  ++report.dependent_islands;
-  gather(reduction, first, last, solution);
-  const bool exact = rows <= EXACT_ROWS;
-  const DualIsland::Outcome outcome = dual_->solve(exact);
-  report.iterations += dual_->iterations();
-  report.inexact_islands += exact && !dual_->isOptimal() ? 1 : 0;
-  if (outcome == DualIsland::Outcome::CHANGED)
+  if (isDependent(reduction, first, last))
   {
-    ++report.changed_islands;
-    report.largest_ratio = std::max(report.largest_ratio, dual_->ratio());
-    scatter(reduction, first, last, solution);
-    for (const int column : used_)
-      changed_[static_cast<size_t>(column)] = 1;
+    int rows = 0;
+    for (size_t k = first; k < last; ++k)
+      rows += member(k).rows;
+    ++report.dependent_islands;
+    gather(reduction, first, last, solution);
+    const bool exact = rows <= EXACT_ROWS;
+    const DualIsland::Outcome outcome = dual_->solve(exact);
+    report.iterations += dual_->iterations();
+    report.inexact_islands += exact && !dual_->isOptimal() ? 1 : 0;
+    if (outcome == DualIsland::Outcome::CHANGED)
+    {
+      ++report.changed_islands;
+      report.largest_ratio = std::max(report.largest_ratio, dual_->ratio());
+      scatter(reduction, first, last, solution);
+      for (const int column : used_)
+        changed_[static_cast<size_t>(column)] = 1;
+    }
   }
   for (const int column : used_)
     place_[static_cast<size_t>(column)] = -1;

@@ -186,7 +186,7 @@ TEST(SuperHelixTest, CantileverHangsAsTheBeamSays)
   for (int k = 0; k < 2; ++k)
   {
     Scenario scenario = loadScenario(
-        "static: true\nbodies:\n  - name: beam\n    rod: {length: 0.2, radius: 0.002, density: "
+        "quasi_static: true\nbodies:\n  - name: beam\n    rod: {length: 0.2, radius: 0.002, density: "
         "1300, young_modulus: 1.0e9, pieces: " +
             std::to_string(4 << k) + ", sections: " + std::to_string(16 >> k) + "}\n    pose: {xyz: [0, 0, 1]}\n",
         "test");

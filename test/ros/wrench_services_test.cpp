@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "request_bench.h"
 
 namespace frictional_contact_sim
@@ -238,6 +239,29 @@ TEST_F(WrenchTest, ABodyNeedNotBeNamedWhereTheLinkSaysIt)
   EXPECT_EQ(bench_.simulator.state().bodies[CRATE].wrenches.size(), 2U);
   request.link = "lid";
   bench_.expectRefused("expected one of base, arm, box", [&] { apply(request); });
+}
+
+TEST(ElasticWrenchServiceTest, TorqueOnAnElasticBodyIsRefusedByServiceAndTopic)
+{
+  RequestBench bench(
+      loadScenario("bodies:\n  - name: jelly\n    elastic: {box: [0.1, 0.1], cells: [2, 2], young_modulus: 1.0e6, "
+                   "poisson_ratio: 0.3, "
+                   "density: 1000}\n    pose: {xyz: [0, 0, 1]}\n",
+                   "test"));
+  ApplyWrench::Request request;
+  request.body = request.link = "jelly";
+  request.wrench.torque.y = 1.0;
+  bench.expectRefused("expected a force alone",
+                      [&] { applyWrench(request, bench.names, bench.frames, bench.simulator); });
+  geometry_msgs::WrenchStamped message;
+  message.header.frame_id = "jelly";
+  message.wrench.torque.x = 1.0;
+  bench.expectRefused("expected a force alone", [&] { takeWrench(message, bench.names, bench.simulator); });
+  request.wrench.torque.y = 0.0;
+  request.wrench.force.x = 1.0;
+  applyWrench(request, bench.names, bench.frames, bench.simulator);
+  bench.run(1);
+  EXPECT_GT(bench.simulator.velocity(0).cwiseAbs().maxCoeff(), 0.0);
 }
 
 }  // namespace

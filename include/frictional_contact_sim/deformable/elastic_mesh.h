@@ -95,8 +95,9 @@ ElasticParts readMatrices(const std::string& mass, const std::string& stiffness,
  *  @throws ModelError listing what there is */
 std::vector<int> nodesNamed(const ElasticParts& parts, const std::string& name);
 
-/** @brief Half the antisymmetric part of grad u on a cell: its rotation [rad]. @param u a displacement a node */
-Eigen::Vector3d cellRotation(const ElasticParts& parts, const std::array<int, 4>& cell,
-                             const std::vector<Eigen::Vector3d>& u);
+/** @brief Gradients of the shape functions of a cell's nodes, rows in body axes [1/m]; zero along what the mesh has
+ * not.
+ */
+Eigen::Matrix<double, 4, 3> cellGradients(const ElasticParts& parts, const std::array<int, 4>& cell);
 
 }  // namespace frictional_contact_sim

@@ -26,7 +26,8 @@ class ElasticSolid : public DynamicBody
 {
 public:
   /** @param supports nodes that do not move, may repeat. @param damping D = damping K [s] >= 0
-   *  @throws ModelError when no node is free, or M is not positive definite */
+   *  @throws ModelError when no node is free, M is not positive definite or K not semi-definite, or a body without
+   *  supports resists translations: constraints that are in the matrices already */
   ElasticSolid(const std::string& name, ElasticParts parts, const std::vector<int>& supports, double damping);
 
   const ElasticParts& parts() const { return parts_; }
@@ -61,23 +62,30 @@ public:
                    Eigen::VectorXd& bias) const override;
   void applyWrenches(Body& body, double now) const override;
   double kineticEnergy(const Body& body) const override;
-  double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const override;
+  double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity) const override;
   double dampingPower(const VectorIn& v) const override;
   std::string refusal(const VectorIn& q) const override;
+  std::string wrenchRefusal(const ExternalWrench& wrench) const override;
+  std::string staticsRefusal() const override;
 
 private:
   Eigen::Vector3d displacement(const VectorIn& q, int node) const;
   Eigen::Vector3d centre(const VectorIn& q) const;
   void setMatrices(const std::vector<int>& supports);
+  void checkMatrices();
+  void checkFree() const;
+  void setRotations();
   void setSurface();
 
   std::string name_;
   ElasticParts parts_;
   double damping_;
   bool is_supported_ = false;
+  bool is_held_ = false;  ///< by its supports against every motion: K is positive definite
   std::vector<Eigen::Vector3i> dofs_;  ///< nodes: coordinate of x, y, z, -1 = none
   SparseRows mass_;
   SparseRows stiffness_;  ///< the same pattern
+  SparseRows rotation_;  ///< three rows a cell: its rotation of q [1/m]
   std::vector<std::vector<int>> columns_;
   std::array<Eigen::VectorXd, 3> carried_;
   double total_mass_ = 0.0;

@@ -75,18 +75,21 @@ public:
   void copyMass(const Body& body, double*& value) const override;
   void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
                    Eigen::VectorXd& bias) const override;
-  /** @brief A rod takes no wrenches; Body::external is the inertia of an accelerated support, whose work is the
-   * support's.
-   */
+  /** @brief At arc length point.x, within or beyond the rod, beside its centre line by point.y and z in the section's
+   * axes; forces and torques in those of the world or the root. Body::external has the inertia of an accelerated
+   * support too, whose work is the support's. */
   void applyWrenches(Body& body, double now) const override;
   double kineticEnergy(const Body& body) const override;
-  double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const override;
+  double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity) const override;
   double dampingPower(const VectorIn& v) const override;
   std::string refusal(const VectorIn& /*q*/) const override { return ""; }
+  std::string wrenchRefusal(const ExternalWrench& /*wrench*/) const override { return ""; }
+  std::string staticsRefusal() const override;
 
 private:
   struct Motion;
   Motion motionOf(const RodShape& shape, const VectorIn& v) const;
+  const RodShape& shapeOfState(const Body& body) const;
 
   RodSpec spec_;
   double step_;  ///< length of a section [m]

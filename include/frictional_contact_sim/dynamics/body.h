@@ -69,6 +69,12 @@ struct BodyModel
   void setMeshReach(const std::vector<double>& mesh_reach);
   /** @brief True for joints with exactly one coordinate that do not mimic another: those take commands. */
   bool isActuated(int joint) const;
+  /** @brief No coordinate and no prescribed motion moves the link. Those of a deformable body have no chains, and move,
+   * but for the root where there are supports. */
+  bool isFixed(int link) const
+  {
+    return chains[link].empty() && !base_motion.active && (!solid || (link == 0 && solid->isSupported()));
+  }
   /** @brief Index in v of a joint with one coordinate. */
   int velocityIndex(int joint) const { return tree.joints[joint].v_index; }
 };
@@ -186,6 +192,9 @@ void setSpeeds(Body& body);
 
 /** @brief Generalized force of the wrenches that act at scenario time `now` [s]. Needs body.middle. */
 void applyWrenches(Body& body, double now);
+
+/** @brief Why a wrench cannot act: a number that is not finite, or what the body does not take; empty where it can. */
+std::string wrenchRefusal(const BodyModel& model, const ExternalWrench& wrench);
 
 /** @brief Forgets the wrenches that have expired at scenario time `now` [s]: part of a step that is taken. */
 void removeExpiredWrenches(Body& body, double now);

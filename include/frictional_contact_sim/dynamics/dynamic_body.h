@@ -61,7 +61,7 @@ public:
   virtual ~DynamicBody() = default;
 
   virtual int velocities() const = 0;  ///< n
-  virtual bool isSupported() const = 0;  ///< something holds it against every rigid motion
+  virtual bool isSupported() const = 0;  ///< some of it is fixed to its base, which does not move by itself
   /** @brief Columns of the entries of M_h, row by row, ascending. */
   virtual const std::vector<std::vector<int>>& massColumns() const = 0;
   virtual std::unique_ptr<BodyWork> makeWork() const = 0;
@@ -92,16 +92,20 @@ public:
    * @param gravity world axes [m/s^2] */
   virtual void computeBias(const Body& body, const Eigen::VectorXd& v, const Eigen::Vector3d& gravity,
                            Eigen::VectorXd& bias) const = 0;
-  /** @brief Body::external of its wrenches at scenario time `now` [s]: forces on the node nearest to the point. */
+  /** @brief Body::external of its wrenches at scenario time `now` [s]. Needs prepare(). */
   virtual void applyWrenches(Body& body, double now) const = 0;
 
   virtual double kineticEnergy(const Body& body) const = 0;  ///< of the state, in the frame of its base [J]
   /** @brief Elastic energy, and gravity's: of a body with supports counted from its reference shape [J]. */
-  virtual double potentialEnergy(const Body& body, const VectorIn& q, const Eigen::Vector3d& gravity) const = 0;
+  virtual double potentialEnergy(const Body& body, const Eigen::Vector3d& gravity) const = 0;
   /** @brief Power of the damping at mean velocity `v` [W] >= 0. */
   virtual double dampingPower(const VectorIn& v) const = 0;
   /** @brief Why the model does not hold at q; empty where it does. */
   virtual std::string refusal(const VectorIn& q) const = 0;
+  /** @brief Why it does not take a wrench; empty where it does. */
+  virtual std::string wrenchRefusal(const ExternalWrench& wrench) const = 0;
+  /** @brief Why one linear step does not find its equilibrium; empty where it does. */
+  virtual std::string staticsRefusal() const = 0;
 };
 
 }  // namespace frictional_contact_sim

@@ -84,6 +84,7 @@ private:
   void addLoops(size_t law, int mark);
   void preparePairs();
   bool sameVelocities(int i, int j) const;
+  void findFresh(const IncrementalProblem& problem);
   void computeHalfRows(const IncrementalProblem& problem);
   void multiplyHalfRows(const Eigen::VectorXd& x, Eigen::VectorXd& rows) const;
   void multiplyPairs();
@@ -94,6 +95,10 @@ private:
   DelassusProblem local_;
   OperatorKind kind_ = OperatorKind::AUTOMATIC;
   std::vector<int> h_outer_, h_inner_, g_outer_, g_inner_;  ///< patterns of the last H and G
+  std::vector<double> h_values_;  ///< of the last H; empty after analyse()
+  /// Laws whose half rows are to be formed, and with them their part of W: those are kept while neither their rows of H
+  /// nor the factor of what they touch change, as those of an elastic body at rest. (With bilaterals Z N is in place.)
+  std::vector<char> is_fresh_;
   std::vector<LawType> types_;
   std::vector<int> block_offset_;  ///< laws + 1, first row of each law
   std::vector<int> pattern_begin_;  ///< laws + 1, into pattern_

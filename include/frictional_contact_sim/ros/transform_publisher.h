@@ -22,6 +22,9 @@ struct TransformChoice
   bool links = false;  ///< parent to child of each URDF joint, as robot_state_publisher does for a robot_description
 };
 
+/** @brief Whether a frame never moves relative to its parent, of a root the world. */
+bool isStatic(const BodyModel& body, int frame);
+
 class TransformPublisher
 {
 public:
@@ -39,7 +42,6 @@ public:
 
 private:
   void append(int body, int frame, const ros::Time& stamp, std::vector<geometry_msgs::TransformStamped>& transforms);
-  bool isStatic(int body, int frame) const;
   bool isChosen(int body, int frame) const;
 
   const Simulator& simulator_;

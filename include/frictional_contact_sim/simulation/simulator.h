@@ -141,8 +141,8 @@ public:
   /** @brief What the joint's servo wants at present; where it does not hold a position the present motion. */
   JointMotion desiredMotion(int body, int joint) const;
   double scenarioTime() const;  ///< since the start or the last reset [s]
-  /** @brief Adds a wrench; its times are on the scenario's clock. @throws std::invalid_argument naming an unknown link
-   */
+  /** @brief Adds a wrench; its times are on the scenario's clock. @throws std::invalid_argument naming an unknown link,
+   * a number that is not finite, or a torque on an elastic body, whose nodes do not turn */
   void addWrench(int body, const ExternalWrench& wrench);
   /** @brief Puts the wrench in place of the last one that this set on its link, from now on until the next; zero only
    * ends that one. @throws std::invalid_argument as addWrench */
@@ -157,7 +157,8 @@ public:
    * the failure policy says what is left, as after stateChanged().
    * @param a_in_b pose of link a in link b (or the world) that they shall have, at most 1 mm and 1 mrad from what they
    * have: closed at 0.1 m/s and 1 rad/s at most
-   * @throws std::invalid_argument for an unknown link, two links that are rigidly joined already, two that cannot move,
+   * @throws std::invalid_argument for an unknown link, a deformable body, two links that are joined already, two that
+   * cannot move,
    * a pose that is too far away; nothing has changed then
    */
   const StepOutcome& attach(const LinkRef& a, const LinkRef& b,

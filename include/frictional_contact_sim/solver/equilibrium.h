@@ -23,6 +23,7 @@ struct Equilibrium
   bool exists = false;
   bool is_proven = false;  ///< when it does not exist: v is a certificate
   double share = 0.0;  ///< |v|_M / |M^-1 f|_M: what of the loads no force balances [-]
+  double residual = 0.0;  ///< of the forces where it exists, nothing moving: residual.h with w = 0 [-]
   double reach = 0.0;  ///< least u_N - mu |u_T| of H v, over the largest |u|: not below zero for a certificate [-]
   int iterations = 0;
   Solution solution;  ///< r, lambda; v = 0 where it exists, else the certificate
