@@ -37,7 +37,7 @@ struct RollingCase
   static constexpr double RIGID = std::numeric_limits<double>::infinity();
 
   std::string name;
-  ElasticMaterial upper;
+  PlaneStrainMaterial upper;
   std::vector<double> lower_moduli = {RIGID};  ///< Young's moduli of the lower bodies [Pa], RIGID allowed
   double lower_poisson_ratio = 0.1;  ///< [-]
   double radius = 1.0;  ///< R of the cylinder (of the pair for half-planes) [m]
