@@ -134,9 +134,13 @@ void moveHalfStep(const Body& body, const Eigen::VectorXd& q, const Eigen::Vecto
 
 void moveToMidpoint(Body& body, double dt)
 {
-  moveHalfStep(body, body.state.q, body.state.v, dt, body.q_middle);
-  // Gaps of a step from rest to rest are those it starts with.
-  body.middle.base_pose = basePose(body, body.model.regime == Regime::DYNAMIC ? 0.5 * dt : 0.0);
+  // A step from rest to rest has the gaps and forces of where it starts.
+  const bool is_motion = body.model.regime == Regime::DYNAMIC;
+  if (is_motion)
+    moveHalfStep(body, body.state.q, body.state.v, dt, body.q_middle);
+  else
+    body.q_middle = body.state.q;
+  body.middle.base_pose = basePose(body, is_motion ? 0.5 * dt : 0.0);
   setPoses(body.model, body.q_middle, body.middle);
   if (body.model.solid)
     body.model.solid->prepare(body, dt);

@@ -37,7 +37,7 @@ LineIntegrals integrateLine(double s1, double s2, double d, bool on_element, dou
 }  // namespace
 
 KernelIntegrals integrateKernels(const Eigen::Vector2d& point, const Eigen::Vector2d& begin, const Eigen::Vector2d& end,
-                                 bool on_element, const ElasticMaterial& material, double length_unit)
+                                 bool on_element, const PlaneStrainMaterial& material, double length_unit)
 {
   const double length = (end - begin).norm();
   const Eigen::Vector2d t = (end - begin) / length;
@@ -67,7 +67,8 @@ KernelIntegrals integrateKernels(const Eigen::Vector2d& point, const Eigen::Vect
   return {displacement_factor * frame * U * frame.transpose(), traction_factor * frame * T * frame.transpose()};
 }
 
-BoundaryMatrices assembleBoundaryMatrices(const Contour& contour, const ElasticMaterial& material, double length_unit)
+BoundaryMatrices assembleBoundaryMatrices(const Contour& contour, const PlaneStrainMaterial& material,
+                                          double length_unit)
 {
   contour.validate();
   material.validate();

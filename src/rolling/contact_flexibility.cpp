@@ -81,7 +81,7 @@ void makeUniformNodes(double half_width, int count, Eigen::VectorXd& x, Eigen::V
     x[i] = (i + 0.5 - 0.5 * count) * h;
 }
 
-ContactFlexibility halfPlaneFlexibility(const ElasticMaterial& material, const Eigen::VectorXd& x,
+ContactFlexibility halfPlaneFlexibility(const PlaneStrainMaterial& material, const Eigen::VectorXd& x,
                                         const Eigen::VectorXd& width, double datum)
 {
   material.validate();
@@ -117,7 +117,7 @@ ContactFlexibility halfPlaneFlexibility(const MaterialPair& materials, const Eig
   return F;
 }
 
-ContactFlexibility condense(const Contour& contour, const ElasticMaterial& material, ContactFrames frames)
+ContactFlexibility condense(const Contour& contour, const PlaneStrainMaterial& material, ContactFrames frames)
 {
   const std::vector<Eigen::Index> contact = contour.select(ElementKind::CONTACT);
   const std::vector<Eigen::Index> held = contour.select(ElementKind::HELD);
@@ -158,7 +158,7 @@ ContactFlexibility condense(const Contour& contour, const ElasticMaterial& mater
   return F;
 }
 
-void addLowerHalfPlane(const ElasticMaterial& material, double datum, ContactFlexibility& flexibility)
+void addLowerHalfPlane(const PlaneStrainMaterial& material, double datum, ContactFlexibility& flexibility)
 {
   // Seen upside down its normal displacement and traction change sign together, the tangential ones likewise keep
   // theirs: only the coupling turns round.

@@ -119,7 +119,7 @@ CreepCurve computeCreepCurve(const ContactFlexibility& flexibility, double frict
   return curve;
 }
 
-void writeCreepCurve(std::ostream& out, const CreepCurve& curve, const ElasticMaterial& upper, double radius)
+void writeCreepCurve(std::ostream& out, const CreepCurve& curve, const PlaneStrainMaterial& upper, double radius)
 {
   const auto list = [&](const std::vector<double>& values)
   {

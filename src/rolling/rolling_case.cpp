@@ -67,7 +67,8 @@ Eigen::VectorXd makeGap(const RollingCase& study, const Eigen::VectorXd& x)
 }
 
 /// The static answer, also the start of rolling at a load.
-void press(const RollingCase& study, const FrictionalLcp& lcp, double Q, const RunHooks& hooks, RollingRun& run)
+void press(const RollingCase& study, const FrictionalLcp& lcp, const std::vector<double>& shares, const RunHooks& hooks,
+           RollingRun& run)
 {
   const Eigen::Index n = run.gap.size();
   if (!study.load)
@@ -78,17 +79,26 @@ void press(const RollingCase& study, const FrictionalLcp& lcp, double Q, const R
     run.converged = run.contact.status == LcpStatus::SOLVED;
     return;
   }
-  LoadTarget target;
-  target.P = *study.load;
-  target.Q = Q;
-  const HertzLine hertz = hertzLine(target.P, study.radius, run.materials.reducedModulus());
-  const LoadedContact answer =
-      solveForLoads(lcp, run.gap, Eigen::VectorXd::Zero(n), target, hertz.half_width * hertz.half_width / study.radius,
-                    0.0, hooks.interrupted);
+  std::vector<LoadTarget> targets;
+  for (const double share : shares)
+  {
+    targets.emplace_back();
+    targets.back().P = *study.load;
+    targets.back().Q = share * run.friction * *study.load;
+  }
+  const HertzLine hertz = hertzLine(*study.load, study.radius, run.materials.reducedModulus());
+  std::vector<LoadStep> steps =
+      followLoads(lcp, run.gap, targets, hertz.half_width * hertz.half_width / study.radius, hooks.interrupted);
+  const LoadedContact& answer = steps.back().answer;
   run.contact = answer.contact;
   run.approach = answer.approach;
   run.shift = answer.shift;
-  run.converged = answer.converged;
+  run.converged = answer.converged && steps.size() == targets.size();
+  if (targets.size() == 1)
+    return;
+  for (const LoadStep& step : steps)
+    run.history.push_back(step.answer.contact.Q);
+  run.steps = std::move(steps);
 }
 
 void rollOn(const RollingCase& study, const FrictionalLcp& lcp, const RunHooks& hooks, RollingRun& run)
@@ -131,8 +141,8 @@ RollingRun runOne(const RollingCase& study, double friction, double lower_modulu
   start = processSeconds();
   run.slip.setZero(run.gap.size());
   const FrictionalLcp lcp(run.flexibility, Eigen::VectorXd::Constant(1, friction));
-  const double Q = study.motion == Motion::STATIC && study.load ? study.load_share * friction * *study.load : 0.0;
-  press(study, lcp, Q, hooks, run);
+  const bool is_sheared = study.motion == Motion::STATIC && !study.load_shares.empty();
+  press(study, lcp, is_sheared ? study.load_shares : std::vector<double>{0.0}, hooks, run);
   const bool pressed = run.converged;
   const double pressed_approach = run.approach;
   if (study.motion == Motion::STATIC)

@@ -138,8 +138,12 @@ ConfigKeys discretisationKeys(RollingCase& study)
 void readLoad(const ConfigNode& node, RollingCase& study)
 {
   study.load.emplace();
-  node.readMap(
-      {required(key("normal", *study.load, positive())), key("tangential_share", study.load_share, inside(-1.0, 1.0))});
+  const auto read_shares = [&study](const ConfigNode& shares)
+  {
+    for (const ConfigNode& one : listed(shares))
+      study.load_shares.push_back(one.number(inside(-1.0, 1.0)));
+  };
+  node.readMap({required(key("normal", *study.load, positive())), key("tangential_share", read_shares)});
 }
 
 void readDisplacement(const ConfigNode& node, RollingCase& study)
@@ -176,8 +180,10 @@ ConfigKeys drivingKeys(RollingCase& study)
               { node.readMap({required(key("points", study.curve_points, 3, 1000))}); })};
 }
 
-void checkDriving(const ConfigNode& root)
+void checkDriving(const ConfigNode& root, const RollingCase& study)
 {
+  if (study.load_shares.size() > 1 && study.motion != Motion::STATIC)
+    root.at("load").at("tangential_share").fail("found several beside rolling.motion, expected one, or motion: static");
   if (root.has("load") == root.has("displacement"))
     root.at("load").fail("found both or neither of load and displacement, expected one of them");
   if (root.has("creep_curve") && !root.has("load"))
@@ -214,7 +220,7 @@ RollingCase readCase(const ConfigNode& root)
                                        }))} +
                discretisationKeys(study) + drivingKeys(study));
   checkDiscretisation(root, study);
-  checkDriving(root);
+  checkDriving(root, study);
   return study;
 }
 }  // namespace

@@ -42,6 +42,8 @@ double closedTraction(const RollingCase& study, const RollingRun& run, const Her
 {
   if (run.friction == 0.0)
     return 0.0;
+  if (run.steps.size() > 1)
+    return mindlinTraction(hertz, run.friction, study.load_shares, x);
   if (study.motion == Motion::STATIC)
     return std::copysign(
         cattaneoTraction(hertz, run.friction, std::abs(run.contact.Q) / (run.friction * run.contact.P), x),
@@ -106,13 +108,19 @@ std::vector<std::string> writeRollingFiles(const RollingCase& study, const std::
       curve.close();
     }
   for (size_t k = 0; k < runs.size(); ++k)
-    if (study.motion == Motion::TRANSIENT)
+    if (study.motion == Motion::TRANSIENT || !runs[k].steps.empty())
     {
       paths.push_back(stem + "_history_" + std::to_string(k) + ".csv");
       File history(paths.back());
-      history.stream() << "step,Q\n";
+      const std::vector<LoadStep>& loads = runs[k].steps;
+      history.stream() << (loads.empty() ? "step,Q\n" : "step,Q,shift,dissipated\n");
       for (size_t step = 0; step < runs[k].history.size(); ++step)
-        history.stream() << step + 1 << ',' << runs[k].history[step] << '\n';
+      {
+        history.stream() << step + 1 << ',' << runs[k].history[step];
+        if (!loads.empty())
+          history.stream() << ',' << loads[step].answer.shift << ',' << loads[step].dissipated;
+        history.stream() << '\n';
+      }
       history.close();
     }
   return paths;

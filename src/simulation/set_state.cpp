@@ -184,9 +184,20 @@ void Simulator::Impl::goBack(const SimulationState& before)
   restartReport();
 }
 
-/** Nothing is thrown; where the impact has no answer the failure policy says what is left. */
+/** Nothing is thrown; where the impact has no answer the failure policy says what is left. From rest to rest there are
+ * no velocities, and no impacts. */
 void Simulator::Impl::impactSolve()
 {
+  if (scenario.regime != Regime::DYNAMIC)
+  {
+    const double kinetic = state.energy.kinetic;
+    for (Body& body : bodies)
+      body.state.v.setZero();
+    updateEnds();
+    bookEnergies();
+    state.energy.impact += kinetic - state.energy.kinetic;
+    return;
+  }
   context.impact = true;
   try
   {

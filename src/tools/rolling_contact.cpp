@@ -51,6 +51,13 @@ void print(const fcs::RollingCase& study, const fcs::RollingRun& run)
             << (run.converged ? "\n" : "\n  NOT CONVERGED\n");
   if (contact.states.front() != fcs::NodeState::SEPARATION || contact.states.back() != fcs::NodeState::SEPARATION)
     std::cout << "  the contact reaches the edge of its zone: a wider half_width is needed\n";
+  if (!run.steps.empty())
+  {
+    double lost = 0.0;
+    for (const fcs::LoadStep& step : run.steps)
+      lost += step.dissipated;
+    std::cout << "  " << run.steps.size() << " loads   dissipated " << lost << " J/m\n";
+  }
   if (study.motion == fcs::Motion::TRANSIENT)
     std::cout << "  " << run.history.size() << " steps of one node\n";
   if (run.curve)
@@ -96,6 +103,8 @@ int run(const Options& options)
   fcs::RollingCase study = fcs::loadRollingCase(options.file);
   if (!options.compare.empty() && study.motion != fcs::Motion::STATIC)
     throw std::invalid_argument(options.file + ": key 'rolling.motion': --compare expects static");
+  if (!options.compare.empty() && study.load_shares.size() > 1)
+    throw std::invalid_argument(options.file + ": key 'load.tangential_share': --compare expects one value");
   if (options.nodes > 0 && study.contour)
     throw std::invalid_argument("--nodes: " + options.file + " has a contour, whose points are the mesh");
   if (options.nodes > 0)

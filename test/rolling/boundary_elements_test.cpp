@@ -17,7 +17,7 @@ using namespace frictional_contact_sim;
 namespace
 {
 constexpr double PI = 3.14159265358979323846;
-const ElasticMaterial STEEL_LIKE{2.0, 0.3};
+const PlaneStrainMaterial STEEL_LIKE{2.0, 0.3};
 
 Contour circle(double radius, int n, bool hole)
 {
@@ -46,7 +46,7 @@ Contour square(int n)
 }
 
 /// Kelvin's U and T at one point, written from the definition.
-void kelvin(const Eigen::Vector2d& r_vector, const Eigen::Vector2d& n, const ElasticMaterial& material,
+void kelvin(const Eigen::Vector2d& r_vector, const Eigen::Vector2d& n, const PlaneStrainMaterial& material,
             Eigen::Matrix2d& U, Eigen::Matrix2d& T)
 {
   const double nu = material.poisson_ratio, r = r_vector.norm();

@@ -18,7 +18,7 @@ using namespace frictional_contact_sim;
 namespace
 {
 constexpr double MU = 0.3, RADIUS = 1.0, LOAD = 100.0;
-const ElasticMaterial RUBBER{94500.0, 0.1};
+const PlaneStrainMaterial RUBBER{94500.0, 0.1};
 const MaterialPair EQUAL{RUBBER, RUBBER, false};
 
 /// n strips over [-reach a, reach a]; a is half-width of Hertz' contact.

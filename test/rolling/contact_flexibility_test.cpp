@@ -16,7 +16,7 @@ using namespace frictional_contact_sim;
 namespace
 {
 constexpr double PI = 3.14159265358979323846;
-const ElasticMaterial RUBBER{94500.0, 0.1};
+const PlaneStrainMaterial RUBBER{94500.0, 0.1};
 
 CylinderMesh meshOf(int contact_elements, double max_angle)
 {

@@ -18,7 +18,7 @@ class CoreSolverTest : public testing::TestWithParam<const char*>
 TEST_P(CoreSolverTest, FindsTheTractionsOfTheNonsymmetricLcp)
 {
   const int n = 30;
-  const ElasticMaterial rubber{94500.0, 0.1};
+  const PlaneStrainMaterial rubber{94500.0, 0.1};
   const Eigen::VectorXd friction = Eigen::VectorXd::Constant(1, 0.3);
   Eigen::VectorXd x, w;
   makeUniformNodes(0.06, n, x, w);
@@ -45,7 +45,7 @@ TEST(CoreProblemTest, MisuseIsNamed)
 {
   Eigen::VectorXd x, w;
   makeUniformNodes(0.06, 3, x, w);
-  const ContactFlexibility F = halfPlaneFlexibility(ElasticMaterial{}, x, w, 2.0);
+  const ContactFlexibility F = halfPlaneFlexibility(PlaneStrainMaterial{}, x, w, 2.0);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3), mu = Eigen::VectorXd::Constant(1, 0.3);
   EXPECT_THROW(poseForTheCore(F, mu, zero, zero), std::invalid_argument);
   EXPECT_THROW(poseForTheCore(F, mu, Eigen::VectorXd::Zero(2), zero), std::invalid_argument);

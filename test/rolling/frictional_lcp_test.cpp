@@ -13,7 +13,7 @@ using namespace frictional_contact_sim;
 
 namespace
 {
-const ElasticMaterial RUBBER{94500.0, 0.1};
+const PlaneStrainMaterial RUBBER{94500.0, 0.1};
 
 ContactFlexibility coupledFlexibility(int n, double half_width = 0.06)
 {

@@ -65,7 +65,7 @@ TEST(RollingCaseTest, ReadsWhatItIsGiven)
   EXPECT_EQ(study.source, FlexibilitySource::HALF_PLANE);
   EXPECT_EQ(study.motion, Motion::STEADY);
   EXPECT_EQ(*study.load, 3.0);
-  EXPECT_EQ(study.load_share, -0.5);
+  EXPECT_EQ(study.load_shares, std::vector<double>{-0.5});
   EXPECT_EQ(study.curve_points, 5);
 }
 
@@ -230,6 +230,26 @@ TEST(RollingFilesTest, TablesAndCurveAreWritten)
   EXPECT_THAT(contents(paths[3]), HasSubstr("step,Q\n1,-"));
   EXPECT_THROW(writeRollingFiles(study, runs, std::string(folder) + "/missing"), std::invalid_argument);
   std::filesystem::remove_all(folder);
+}
+
+TEST(RollingCaseTest, LoadsThatComeAndGoAreFollowedAndWritten)
+{
+  const RollingCase study = example("hysteresis");
+  ASSERT_GT(study.load_shares.size(), 3u);
+  const std::vector<RollingRun> runs = runRollingCase(study);
+  ASSERT_EQ(runs.size(), 1u);
+  ASSERT_TRUE(runs[0].converged);
+  ASSERT_EQ(runs[0].steps.size(), study.load_shares.size());
+  for (size_t k = 0; k < study.load_shares.size(); ++k)
+    EXPECT_NEAR(runs[0].history[k], study.load_shares[k] * 0.3 * *study.load, 1e-7 * *study.load);
+  const std::string folder = testing::TempDir() + "hysteresis";
+  std::filesystem::create_directories(folder);
+  const std::vector<std::string> paths = writeRollingFiles(study, runs, folder);
+  ASSERT_EQ(paths.size(), 3u);
+  EXPECT_THAT(contents(paths[2]), HasSubstr("step,Q,shift,dissipated\n1,"));
+  EXPECT_THAT(complaint(HEAD + "load: {normal: 1, tangential_share: [0.5, 1.5]}\n"), HasSubstr("tangential_share[1]"));
+  EXPECT_THAT(complaint(HEAD + "load: {normal: 1, tangential_share: [0.5, 0]}\nrolling: {motion: steady}\n"),
+              HasSubstr("load.tangential_share"));
 }
 
 TEST(RollingCaseTest, RepeatedRunsGiveTheSameBits)

@@ -17,7 +17,7 @@
 #include <Eigen/Core>
 
 #include "frictional_contact_sim/rolling/contour.h"
-#include "frictional_contact_sim/rolling/elastic_material.h"
+#include "frictional_contact_sim/rolling/plane_strain_material.h"
 
 namespace frictional_contact_sim
 {
@@ -39,10 +39,10 @@ struct KernelIntegrals
  * @param on_element the point lies on the element: the angle term is that of the principal value, zero
  */
 KernelIntegrals integrateKernels(const Eigen::Vector2d& point, const Eigen::Vector2d& begin, const Eigen::Vector2d& end,
-                                 bool on_element, const ElasticMaterial& material, double length_unit);
+                                 bool on_element, const PlaneStrainMaterial& material, double length_unit);
 
 /** @param length_unit [m]; 0 = eight times the largest extent of the contour */
-BoundaryMatrices assembleBoundaryMatrices(const Contour& contour, const ElasticMaterial& material,
+BoundaryMatrices assembleBoundaryMatrices(const Contour& contour, const PlaneStrainMaterial& material,
                                           double length_unit = 0.0);
 
 struct BoundarySolution

@@ -8,8 +8,10 @@
  *   Carter            |Q|/(mu P) = 1 - (1 - xi R/(mu a))^2,  c = a - xi R/mu,  the stick strip [a - 2c, a] at the
  * leading edge x = a,  q(x) = mu p0 [ sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x - a + c)^2/c^2) ] R: 1/R = 1/R1 + 1/R2 [m];
  * P, Q: loads per width [N/m]; xi: creepage [-]. Source: Johnson, Contact Mechanics
- * (1985), 4.42, 4.45, 7.23-7.28, 8.39-8.47.
+ * (1985), 4.42, 4.45, 7.23-7.28, 8.39-8.47; Mindlin and Deresiewicz (1953) for loads that turn round.
  */
+#include <vector>
+
 namespace frictional_contact_sim
 {
 struct HertzLine
@@ -27,6 +29,13 @@ double cattaneoTraction(const HertzLine& hertz, double friction, double load_sha
 
 /** @brief |Q|/(mu P) at a creepage xi >= 0, 1 once everything slips. */
 double carterLoadShare(const HertzLine& hertz, double radius, double friction, double creepage);
+/**
+ * @brief Q coming and going at constant P: a branch from one turning point to the next adds twice Cattaneo's traction
+ * of half the change, and a loop that closes is forgotten (Masing's rules).
+ * @param load_shares Q/(mu P) in order, each in (-1, 1), from Q = 0 @return q(x) [Pa]
+ */
+double mindlinTraction(const HertzLine& hertz, double friction, const std::vector<double>& load_shares, double x);
+
 /** @brief xi R = mu a: from here on everything slips. */
 double carterSaturation(const HertzLine& hertz, double radius, double friction);
 /** @brief |q|(x), the leading edge at x = +a. */

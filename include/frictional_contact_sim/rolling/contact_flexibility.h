@@ -43,7 +43,7 @@ struct ContactFlexibility
 void makeUniformNodes(double half_width, int count, Eigen::VectorXd& x, Eigen::VectorXd& width);
 
 /** @brief Of the upper half-plane alone. @param datum D [m], larger than the contact zone. */
-ContactFlexibility halfPlaneFlexibility(const ElasticMaterial& material, const Eigen::VectorXd& x,
+ContactFlexibility halfPlaneFlexibility(const PlaneStrainMaterial& material, const Eigen::VectorXd& x,
                                         const Eigen::VectorXd& width, double datum);
 /** @brief Of a pair of half-planes. */
 ContactFlexibility halfPlaneFlexibility(const MaterialPair& materials, const Eigen::VectorXd& x,
@@ -59,9 +59,9 @@ enum class ContactFrames
  * @brief Of the upper body by boundary elements, condensed to its CONTACT elements.
  * @throws std::invalid_argument without contact or without held elements, or on a bad contour
  */
-ContactFlexibility condense(const Contour& contour, const ElasticMaterial& material, ContactFrames frames);
+ContactFlexibility condense(const Contour& contour, const PlaneStrainMaterial& material, ContactFrames frames);
 
 /** @brief The lower half-plane's share is added to an upper body's flexibility. */
-void addLowerHalfPlane(const ElasticMaterial& material, double datum, ContactFlexibility& flexibility);
+void addLowerHalfPlane(const PlaneStrainMaterial& material, double datum, ContactFlexibility& flexibility);
 
 }  // namespace frictional_contact_sim

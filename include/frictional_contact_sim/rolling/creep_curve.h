@@ -53,6 +53,6 @@ CreepCurve computeCreepCurve(const ContactFlexibility& flexibility, double frict
                              const Eigen::VectorXd& gap, double approach, double creepage_unit,
                              const CreepCurveOptions& options = {});
 
-void writeCreepCurve(std::ostream& out, const CreepCurve& curve, const ElasticMaterial& upper, double radius);
+void writeCreepCurve(std::ostream& out, const CreepCurve& curve, const PlaneStrainMaterial& upper, double radius);
 
 }  // namespace frictional_contact_sim

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "frictional_contact_sim/rolling/creep_curve.h"
+#include "frictional_contact_sim/rolling/load_path.h"
 
 namespace frictional_contact_sim
 {
@@ -37,7 +38,7 @@ struct RollingCase
   static constexpr double RIGID = std::numeric_limits<double>::infinity();
 
   std::string name;
-  ElasticMaterial upper;
+  PlaneStrainMaterial upper;
   std::vector<double> lower_moduli = {RIGID};  ///< Young's moduli of the lower bodies [Pa], RIGID allowed
   double lower_poisson_ratio = 0.1;  ///< [-]
   double radius = 1.0;  ///< R of the cylinder (of the pair for half-planes) [m]
@@ -51,7 +52,7 @@ struct RollingCase
   CylinderMesh mesh;  ///< outside the contact zone; the rest is overwritten
   std::optional<Contour> contour;  ///< instead of the cylinder's mesh
   std::optional<double> load;  ///< P [N/m]; else displacements are prescribed
-  double load_share = 0.0;  ///< Q/(mu P) in (-1, 1), static only [-]
+  std::vector<double> load_shares;  ///< Q/(mu P) in (-1, 1), one after another at P, static only; none: Q = 0 [-]
   double normal_displacement = 0.0;  ///< d_N > 0, pressed in [m]
   double tangential_displacement = 0.0;  ///< d_T [m]
   Motion motion = Motion::STATIC;
@@ -74,7 +75,8 @@ struct RollingRun
   Eigen::VectorXd gap;  ///< n [m]
   FrictionalContact contact;
   Eigen::VectorXd slip;  ///< n, slip velocity over V [-]
-  std::vector<double> history;  ///< transient: Q after each step [N/m]
+  std::vector<double> history;  ///< transient, or several loads: Q after each step [N/m]
+  std::vector<LoadStep> steps;  ///< several loads: what each has left
   double approach = 0.0, shift = 0.0;  ///< rigid displacements [m]
   bool converged = false;
   double asymmetry = 0.0;  ///< |F - F'|/|F| [-]

@@ -1,6 +1,6 @@
 #pragma once
 /**
- * @file elastic_material.h
+ * @file plane_strain_material.h
  * @brief Isotropic linear elasticity in plane strain, and what a pair of bodies makes of it.
  *
  *   G = E / (2 (1 + nu)),   1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2,
@@ -12,7 +12,7 @@
  */
 namespace frictional_contact_sim
 {
-struct ElasticMaterial
+struct PlaneStrainMaterial
 {
   double young_modulus = 94500.0;  ///< E [Pa], > 0
   double poisson_ratio = 0.1;  ///< nu [-], in (-1, 0.5)
@@ -29,8 +29,8 @@ struct ElasticMaterial
 /** @brief The upper body, the lower one or a rigid one in its place (nullptr). */
 struct MaterialPair
 {
-  ElasticMaterial upper;
-  ElasticMaterial lower;
+  PlaneStrainMaterial upper;
+  PlaneStrainMaterial lower;
   bool lower_is_rigid = true;
 
   double reducedModulus() const;  ///< E* [Pa]

@@ -1,4 +1,4 @@
-#include "frictional_contact_sim/rolling/elastic_material.h"
+#include "frictional_contact_sim/rolling/plane_strain_material.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace frictional_contact_sim
 {
-void ElasticMaterial::validate() const
+void PlaneStrainMaterial::validate() const
 {
   if (!(young_modulus > 0.0) || !std::isfinite(young_modulus))
     throw std::invalid_argument("young_modulus is " + std::to_string(young_modulus) + ", expected > 0");
