@@ -330,24 +330,6 @@ TEST(RodWrenchTest, ItsWorkIsInTheLedger)
   EXPECT_GT(work, 1e-6);
 }
 
-TEST(ElasticStateFromOutsideTest, OverlapsThatAreLeftAreFiniteAndShallow)
-{
-  Simulator simulator(loadScenario("bodies:\n" + rod("hair", {0.0, 0.0, 1.0}), "test"));
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double overlap : {nan, -1e-12, 1.1e-9, 1.0, std::numeric_limits<double>::infinity()})
-  {
-    SimulationState state = simulator.state();
-    state.wedged.overlap = overlap;
-    EXPECT_THAT(messageOf([&] { simulator.setState(state); }), HasSubstr("wedged.overlap is ")) << overlap;
-  }
-  for (const double overlap : {0.0, 1e-12, 1e-9})
-  {
-    SimulationState state = simulator.state();
-    state.wedged.overlap = overlap;
-    EXPECT_EQ(messageOf([&] { simulator.setState(state); }), "no error") << overlap;
-  }
-}
-
 TEST(ElasticSizeTest, CellsAndSectionsInAllAreBounded)
 {
   const auto cells = [](const std::string& what)

@@ -1,8 +1,13 @@
-// Bodies wedged between others: nothing can push their overlaps out, a step does not ask in vain every time, and what is
-// not wedged is pushed out meanwhile.
+// Bodies wedged between others: nothing can push their overlaps out, a step does not ask in vain every time, and what
+// is not wedged is pushed out meanwhile.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <string>
+
 #include "frictional_contact_sim/simulation/simulator.h"
+#include "frictional_contact_sim/simulation/state_archive.h"
 #include "scene.h"
 #include "support/dice.h"
 
@@ -89,6 +94,34 @@ TEST(WedgedTest, ALoadedStateGoesOnToTheBitWhileOverlapsAreLeft)
     ASSERT_EQ(first.stateHash(), second.stateHash()) << i;
     ASSERT_EQ(first.report().iterations, second.report().iterations) << i;
   }
+}
+
+TEST(WedgedTest, PairsOfAStateFromOutsideAreChecked)
+{
+  Simulator simulator(wedgedBlock(1e-9, 1.0));
+  const auto message = [&](const WedgedPairs& pairs)
+  {
+    SimulationState state = simulator.state();
+    state.wedged = pairs;
+    try
+    {
+      simulator.setState(state);
+    }
+    catch (const StateError& error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double overlap : {std::nan(""), -1e-12, infinity})
+    EXPECT_NE(message({{0, 1, overlap, 3}}), "") << overlap;
+  EXPECT_NE(message({{0, 1, 1e-9, 0}}), "");
+  EXPECT_NE(message({{0, 1000, 1e-9, 3}}), "");
+  EXPECT_NE(message({{-1, 1, 1e-9, 3}}), "");
+  EXPECT_NE(message({{0, 1, 1e-9, 3}, {0, 1, 1e-9, 3}}), "");
+  EXPECT_NE(message({{1, 2, 1e-9, 3}, {0, 1, 1e-9, 3}}), "");
+  EXPECT_EQ(message({{0, 1, 1e-9, 3}, {1, 2, 1e-3, 64}}), "");
 }
 }  // namespace
 }  // namespace frictional_contact_sim
