@@ -22,7 +22,7 @@ MODULES = {
     "model": ["math"],
     "collision": ["model"],
     "dynamics": ["model", "collision", "problem"],
-    "deformable": ["dynamics", "collision"],
+    "deformable": ["dynamics", "collision", "config"],
     "simulation": ["dynamics", "deformable", "solver", "config"],
     "rolling": ["math", "solver", "config"],
     "ros": ["simulation", "config"],

@@ -195,9 +195,9 @@ bool Simulator::Impl::pushesOut(const ContactPoint& point) const
 
 bool Simulator::Impl::pushesOut() const
 {
-  return context.normal_law.recovery_speed > 0.0 &&
-         std::any_of(context.points->begin(), context.points->end(),
-                     [this](const ContactPoint& point) { return pushesOut(point); });
+  return context.normal_law.recovery_speed > 0.0 && std::any_of(
+                                                        context.points->begin(), context.points->end(),
+                                                        [this](const ContactPoint& point) { return pushesOut(point); });
 }
 
 /**
@@ -211,6 +211,7 @@ void Simulator::Impl::askLess()
     contact_set.goBack();
     return;
   }
+  contact_set.beLenient();
   const std::vector<ContactPoint>& points = *context.points;
   std::vector<char> leaves(points.size(), 0);
   for (size_t i = 0; i < points.size(); ++i)
@@ -232,10 +233,7 @@ void Simulator::Impl::askLess()
       leaves.swap(is_worst);
   }
   else
-  {
     context.normal_law.recovery_speed = 0.0;
-    contact_set.beLenient();
-  }
   for (size_t i = 0; i < points.size(); ++i)
     if (leaves[i] != 0)
     {
