@@ -10,9 +10,10 @@ namespace
 template <class Pairs>
 auto placeOf(Pairs& pairs, int shape_a, int shape_b)
 {
-  return std::lower_bound(pairs.begin(), pairs.end(), std::make_pair(shape_a, shape_b),
-                          [](const WedgedPair& pair, const std::pair<int, int>& shapes)
-                          { return std::make_pair(pair.shape_a, pair.shape_b) < shapes; });
+  return std::lower_bound(
+      pairs.begin(), pairs.end(), std::make_pair(shape_a, shape_b),
+      [](const WedgedPair& pair, const std::pair<int, int>& shapes)
+      { return std::make_pair(pair.shape_a, pair.shape_b) < shapes; });
 }
 }  // namespace
 
