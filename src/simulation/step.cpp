@@ -99,7 +99,11 @@ void Simulator::Impl::solveStep()
         return;
       }
     if (context.points == nullptr)
+    {
       context.points = &contact_set.find(context);
+      if (!context.wedged.empty())
+        contact_set.beLenient();
+    }
     if (again == Again::FORCES)
       guess = result.solution;
     else
