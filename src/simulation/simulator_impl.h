@@ -35,6 +35,7 @@ struct Simulator::Impl
   void finishStep();
 
   void beginRows();
+  bool mayRecoverLess() const;
   bool pushesOut() const;
   bool pushesOut(const ContactPoint& point) const;
   void askLess();

@@ -120,7 +120,7 @@ void Simulator::Impl::solveStep()
       return;
     }
     const bool pushes = pushesOut();
-    const bool can_ask_less = pushes || contact_set.canGoBack();
+    const bool can_ask_less = pushes || mayRecoverLess() || contact_set.canGoBack();
     solver.solve(assembly.problem(), guess, !can_ask_less, pushes, result);
     again = Again::NO;
     failed_rounds += result.status != SolverStatus::CONVERGED;
@@ -204,6 +204,12 @@ bool Simulator::Impl::pushesOut() const
                                                         [this](const ContactPoint& point) { return pushesOut(point); });
 }
 
+/** Beside wedged pairs what is beyond a joint's limit may be wedged as well. */
+bool Simulator::Impl::mayRecoverLess() const
+{
+  return context.normal_law.recovery_speed > 0.0 && !context.wedged.empty();
+}
+
 /**
  * After a solve without an answer: overlaps that are not pushed out (see dynamics/wedged_pairs.h), those of the pairs
  * whose law is not met first, then all; else fewer rows.
@@ -212,7 +218,10 @@ void Simulator::Impl::askLess()
 {
   if (!pushesOut())
   {
-    contact_set.goBack();
+    if (mayRecoverLess())
+      context.normal_law.recovery_speed = 0.0;
+    else
+      contact_set.goBack();
     return;
   }
   contact_set.beLenient();

@@ -36,6 +36,7 @@ inline const std::vector<KnownSeeds>& knownSeeds()
       {"penetration", "rows given up for a solve, 1.3e-5 m in ten steps", {261}},
       {"gap", "fast light links; r_N of 3e-4 N s with u_N of 1e-10 m/s: not traced", {146, 207, 263, 271, 278, 100018}},
       {"friction", "1e-11 J of 1e-3 N s, not traced", {207, 263, 271}},
+      {"cone", "|r_T| beyond mu r_N in its last digits, one step of a scene that has run away; not traced", {263}},
       {"rise", "the same as balance", {263, 271, 278, 100011}},
   };
   return table;
