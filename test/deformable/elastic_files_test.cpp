@@ -10,11 +10,14 @@
 
 #include "frictional_contact_sim/deformable/elastic_solid.h"
 #include "frictional_contact_sim/model/model_error.h"
+#include "support/message_of.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
+using test_support::messageOf;
+
 ElasticMaterial material()
 {
   ElasticMaterial some;
@@ -29,20 +32,6 @@ ElasticMesh mesh(int dimension)
   if (dimension == 1)
     return barMesh(0.5, 6);
   return dimension == 2 ? boxMesh({0.3, 0.2}, {4, 3}) : boxMesh({0.3, 0.2, 0.2}, {3, 2, 2});
-}
-
-template <typename Action>
-std::string messageOf(const Action& action)
-{
-  try
-  {
-    action();
-  }
-  catch (const ModelError& error)
-  {
-    return error.what();
-  }
-  return "no error";
 }
 
 std::string refusalOf(const ElasticParts& parts, const std::vector<int>& supports = {})

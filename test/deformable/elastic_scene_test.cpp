@@ -15,6 +15,7 @@
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "support/dice.h"
+#include "support/message_of.h"
 
 namespace frictional_contact_sim
 {
@@ -22,6 +23,7 @@ namespace
 {
 using test_support::Dice;
 using test_support::list;
+using test_support::messageOf;
 using testing::HasSubstr;
 
 const char* const MATERIAL = "young_modulus: 1.0e6, poisson_ratio: 0.3, density: 1000";
@@ -53,20 +55,6 @@ BodySpec rigidBox(const std::string& name, const Eigen::Vector3d& place, double 
   body.pose = Eigen::Isometry3d::Identity();
   body.pose->translation() = place;
   return body;
-}
-
-template <typename Action>
-std::string messageOf(const Action& action)
-{
-  try
-  {
-    action();
-  }
-  catch (const std::exception& error)
-  {
-    return error.what();
-  }
-  return "no error";
 }
 
 std::string loadingMessage(const std::string& yaml)

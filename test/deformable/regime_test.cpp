@@ -8,11 +8,14 @@
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "support/dice.h"
+#include "support/message_of.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
+using test_support::messageOf;
+
 using testing::HasSubstr;
 
 const char* const BOX =
@@ -38,20 +41,6 @@ Scenario scene(Regime regime, double time_step = 0.001)
   scenario.time_step = time_step;
   scenario.ground = GroundSpec{};
   return scenario;
-}
-
-template <typename Action>
-std::string messageOf(const Action& action)
-{
-  try
-  {
-    action();
-  }
-  catch (const std::exception& error)
-  {
-    return error.what();
-  }
-  return "no error";
 }
 
 std::string loadingMessage(const std::string& yaml)
