@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "cross_matrix.h"
 #include "frictional_contact_sim/config/number_range.h"
 #include "frictional_contact_sim/deformable/elastic_solid.h"
+#include "frictional_contact_sim/math/cross_matrix.h"
 #include "frictional_contact_sim/model/model_error.h"
 #include "frictional_contact_sim/problem/mass_factor.h"
 

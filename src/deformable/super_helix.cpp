@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cross_matrix.h"
+#include "frictional_contact_sim/math/cross_matrix.h"
 #include "link_tree.h"
 
 namespace frictional_contact_sim

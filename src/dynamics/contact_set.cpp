@@ -192,7 +192,8 @@ ContactSet::Candidate* ContactSet::known(const ContactId& id)
 const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
 {
   rounds_ = 0;
-  ghosts_tried_ = is_last_ = is_lenient_ = false;
+  ghosts_tried_ = is_last_ = false;
+  is_lenient_ = !context.impact && !context.wedged.empty();
   carried_.clear();
   for (const ContactState& contact : last_)
     if (!contact.impulse.isZero(0.0))

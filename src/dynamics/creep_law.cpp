@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frictional_contact_sim/math/cross_matrix.h"
+
 namespace frictional_contact_sim
 {
 namespace
@@ -15,13 +17,6 @@ size_t segmentEnd(const std::vector<double>& creepage, double xi)
 {
   const auto entry = std::lower_bound(creepage.begin() + 1, creepage.end() - 1, xi);
   return static_cast<size_t>(entry - creepage.begin());
-}
-
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a)
-{
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return matrix;
 }
 }  // namespace
 

@@ -16,19 +16,26 @@ namespace
 constexpr double RESTING_SHARE = 1e-3;  ///< depth over the distance of nodes: not worth a word
 constexpr double BESIDE = 1e-3;  ///< a plane body meets what is so far beside its plane [m]
 
-/** World, of the shapes of a body: of an elastic one its surface nodes. */
-std::vector<Eigen::Vector3d> shapeCentres(const WorldModel& world, const std::vector<BodyState>& states, int body)
+/** World, of the shapes of each body: of an elastic one its surface nodes. */
+std::vector<std::vector<Eigen::Vector3d>> shapeCentres(const WorldModel& world, const std::vector<BodyState>& states)
 {
-  const BodyModel& model = world.bodies[static_cast<size_t>(body)];
-  BodyState state = states[static_cast<size_t>(body)];
-  Body placed(model, state);
-  updateEnd(placed);
-  std::vector<Eigen::Vector3d> centres;
+  std::vector<MultibodyData> poses;
+  for (size_t b = 0; b < world.bodies.size(); ++b)
+  {
+    BodyState state = states[b];
+    Body placed(world.bodies[b], state);
+    updateEnd(placed);
+    poses.push_back(placed.end);
+  }
+  std::vector<std::vector<Eigen::Vector3d>> centres(world.bodies.size());
   for (int handle = 0; handle < world.collision.shapeCount(); ++handle)
-    if (const ShapeInfo& info = world.collision.shape(handle); info.body == body)
-      centres.push_back(
-          placed.end.link_pose[static_cast<size_t>(info.link)] *
-          (model.tree.shapes[static_cast<size_t>(info.index)].placement * world.collision.convexShape(handle).center));
+    if (const ShapeInfo& info = world.collision.shape(handle); info.body >= 0)
+    {
+      const auto body = static_cast<size_t>(info.body);
+      const CollisionShape& shape = world.bodies[body].tree.shapes[static_cast<size_t>(info.index)];
+      centres[body].push_back(poses[body].link_pose[static_cast<size_t>(info.link)] *
+                              (shape.placement * world.collision.convexShape(handle).center));
+    }
   return centres;
 }
 
@@ -124,6 +131,7 @@ private:
 std::vector<ElasticOverlap> findElasticOverlaps(const WorldModel& world, const std::vector<BodyState>& states, int body)
 {
   std::vector<ElasticOverlap> overlaps;
+  std::vector<std::vector<Eigen::Vector3d>> centres;
   const int count = static_cast<int>(world.bodies.size());
   for (int outer = 0; outer < count; ++outer)
   {
@@ -131,6 +139,8 @@ std::vector<ElasticOverlap> findElasticOverlaps(const WorldModel& world, const s
     const auto* solid = dynamic_cast<const ElasticSolid*>(around.solid.get());
     if (solid == nullptr)
       continue;
+    if (centres.empty())
+      centres = shapeCentres(world, states);
     const PlacedCells cells(*solid, states[static_cast<size_t>(outer)]);
     for (int inner = 0; inner < count; ++inner)
     {
@@ -138,7 +148,7 @@ std::vector<ElasticOverlap> findElasticOverlaps(const WorldModel& world, const s
         continue;
       const BodyModel& inside = world.bodies[static_cast<size_t>(inner)];
       double depth = 0.0;
-      for (const Eigen::Vector3d& centre : shapeCentres(world, states, inner))
+      for (const Eigen::Vector3d& centre : centres[static_cast<size_t>(inner)])
         depth = std::max(depth, cells.depthOf(centre));
       double most = solid->nodeDistance();
       if (inside.solid)

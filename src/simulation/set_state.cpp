@@ -4,7 +4,6 @@
 #include <exception>
 
 #include "frictional_contact_sim/config/number_range.h"
-#include "frictional_contact_sim/dynamics/contact_law.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/simulation/state_archive.h"

@@ -99,11 +99,7 @@ void Simulator::Impl::solveStep()
         return;
       }
     if (context.points == nullptr)
-    {
       context.points = &contact_set.find(context);
-      if (!context.wedged.empty())
-        contact_set.beLenient();
-    }
     if (again == Again::FORCES)
       guess = result.solution;
     else
@@ -210,6 +206,18 @@ bool Simulator::Impl::mayRecoverLess() const
   return context.normal_law.recovery_speed > 0.0 && !context.wedged.empty();
 }
 
+/** Points that are pushed out and whose law the last solve has not met. */
+std::vector<const ContactPoint*> Simulator::Impl::unmetPushes() const
+{
+  std::vector<const ContactPoint*> points;
+  const double worst = result.law_errors.size() == 0 ? 0.0 : result.law_errors.maxCoeff();
+  for (Eigen::Index law = 0; law < result.law_errors.size(); ++law)
+    if (result.law_errors[law] > SHARE_OF_WORST * worst)
+      if (const ContactPoint* point = assembly.contactOf(context, static_cast<int>(law)); point && pushesOut(*point))
+        points.push_back(point);
+  return points;
+}
+
 /**
  * After a solve without an answer: overlaps that are not pushed out (see dynamics/wedged_pairs.h), those of the pairs
  * whose law is not met first, then all; else fewer rows.
@@ -225,36 +233,21 @@ void Simulator::Impl::askLess()
     return;
   }
   contact_set.beLenient();
-  const std::vector<ContactPoint>& points = *context.points;
-  std::vector<char> leaves(points.size(), 0);
-  for (size_t i = 0; i < points.size(); ++i)
-    leaves[i] = pushesOut(points[i]);
+  std::vector<const ContactPoint*> left;
   if (++failed_pushes <= MOST_PARTIAL_PUSHES)
-  {
-    std::vector<char> is_worst(points.size(), 0);
-    bool any = false;
-    const double worst = result.law_errors.size() == 0 ? 0.0 : result.law_errors.maxCoeff();
-    for (Eigen::Index law = 0; law < result.law_errors.size(); ++law)
-      if (result.law_errors[law] > SHARE_OF_WORST * worst)
-        if (const ContactPoint* point = assembly.contactOf(context, static_cast<int>(law)))
-        {
-          const auto i = static_cast<size_t>(point - points.data());
-          is_worst[i] = leaves[i];
-          any = any || leaves[i] != 0;
-        }
-    if (any)
-      leaves.swap(is_worst);
-  }
+    left = unmetPushes();
   else
     context.normal_law.recovery_speed = 0.0;
-  for (size_t i = 0; i < points.size(); ++i)
-    if (leaves[i] != 0)
-    {
-      const ContactPoint& point = points[i];
-      const double overlap = -(point.is_linearised ? point.row_gap : point.gap);
-      leaveOverlap({point.shape_a, point.shape_b, overlap + WEDGED_MARGIN, WEDGED_STEPS},
-                   point.is_linearised ? context.wedged_ahead : context.wedged);
-    }
+  if (left.empty())
+    for (const ContactPoint& point : *context.points)
+      if (pushesOut(point))
+        left.push_back(&point);
+  for (const ContactPoint* point : left)
+  {
+    const double overlap = -(point->is_linearised ? point->row_gap : point->gap);
+    leaveOverlap({point->shape_a, point->shape_b, overlap + WEDGED_MARGIN, WEDGED_STEPS},
+                 point->is_linearised ? context.wedged_ahead : context.wedged);
+  }
 }
 
 /** Solves converged, but not the rows' own law. */

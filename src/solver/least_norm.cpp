@@ -182,6 +182,22 @@ void LeastNorm::findVelocities(const DelassusReduction& reduction, size_t first,
     place_[static_cast<size_t>(used_[k])] = static_cast<int>(k);
 }
 
+void LeastNorm::forgetVelocities()
+{
+  for (const int column : used_)
+    place_[static_cast<size_t>(column)] = -1;
+}
+
+/** Whether the cubic test of an island pays. @param rows of it that do not stand alone */
+bool LeastNorm::isCheap(const DelassusReduction& reduction, size_t first, size_t last, int rows)
+{
+  if (rows <= GRAM_ROWS)
+    return true;
+  findVelocities(reduction, first, last);
+  forgetVelocities();
+  return GRAM_VELOCITIES * static_cast<size_t>(rows) <= used_.size();
+}
+
 /**
  * Whether the velocities that no other law touches (the joints of one's own leg) make its rows independent of all
  * others: a combination of rows that vanishes has no share of it.
@@ -269,8 +285,7 @@ bool LeastNorm::isDependent(const DelassusReduction& reduction, size_t first, si
     }
   if (kept_.empty())
     return false;
-  const bool is_cheap = rows <= GRAM_ROWS || GRAM_VELOCITIES * static_cast<size_t>(rows) <= used_.size();
-  if (!is_cheap || reduction.problem().W.isMatrixFree())
+  if (reduction.problem().W.isMatrixFree() || !isCheap(reduction, first, last, rows))
     return true;
   fillGram(reduction, rows);
   size_t row = gram_.size();
@@ -326,29 +341,27 @@ void LeastNorm::scatter(const DelassusReduction& reduction, size_t first, size_t
 void LeastNorm::improveIsland(const DelassusReduction& reduction, size_t first, size_t last, Solution& solution,
                               Report& report)
 {
+  if (!isDependent(reduction, first, last))
+    return;
   findVelocities(reduction, first, last);
-  if (isDependent(reduction, first, last))
+  int rows = 0;
+  for (size_t k = first; k < last; ++k)
+    rows += member(k).rows;
+  ++report.dependent_islands;
+  gather(reduction, first, last, solution);
+  const bool exact = rows <= EXACT_ROWS;
+  const DualIsland::Outcome outcome = dual_->solve(exact);
+  report.iterations += dual_->iterations();
+  report.inexact_islands += exact && !dual_->isOptimal() ? 1 : 0;
+  if (outcome == DualIsland::Outcome::CHANGED)
   {
-    int rows = 0;
-    for (size_t k = first; k < last; ++k)
-      rows += member(k).rows;
-    ++report.dependent_islands;
-    gather(reduction, first, last, solution);
-    const bool exact = rows <= EXACT_ROWS;
-    const DualIsland::Outcome outcome = dual_->solve(exact);
-    report.iterations += dual_->iterations();
-    report.inexact_islands += exact && !dual_->isOptimal() ? 1 : 0;
-    if (outcome == DualIsland::Outcome::CHANGED)
-    {
-      ++report.changed_islands;
-      report.largest_ratio = std::max(report.largest_ratio, dual_->ratio());
-      scatter(reduction, first, last, solution);
-      for (const int column : used_)
-        changed_[static_cast<size_t>(column)] = 1;
-    }
+    ++report.changed_islands;
+    report.largest_ratio = std::max(report.largest_ratio, dual_->ratio());
+    scatter(reduction, first, last, solution);
+    for (const int column : used_)
+      changed_[static_cast<size_t>(column)] = 1;
   }
-  for (const int column : used_)
-    place_[static_cast<size_t>(column)] = -1;
+  forgetVelocities();
 }
 
 /** lambda of the changed islands; that of the others keeps its bits. */

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "frictional_contact_sim/math/cross_matrix.h"
 #include "frictional_contact_sim/model/dynamics_algorithms.h"
 #include "frictional_contact_sim/model/urdf_loader.h"
 #include "model/urdf_text.h"
@@ -18,13 +19,6 @@ std::string thesisPendulum(double m1, double l1, double m2, double l2)
       R"(<link name="world"/>)" + link("first", inertial(m1, "0 0 0", {0, 0, -l1})) +
       link("second", inertial(m2, "0 0 0", {0, 0, -l2})) + joint("a", "continuous", "world", "first", axis) +
       joint("b", "continuous", "first", "second", axis + R"(<origin xyz="0 0 )" + std::to_string(-l1) + R"("/>)"));
-}
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
 }
 }  // namespace
 
@@ -164,7 +158,8 @@ TEST(LumpedFixedJointsTest, InertiaIsTheParallelAxisSum)
   const Eigen::Vector3d second(0.4 - 0.1, 0.1, -0.2);  // b's y is a's -x
   const Eigen::Vector3d center = (2.0 * first + 3.0 * second) / 5.0;
   Eigen::Matrix3d moments = Eigen::Vector3d(0.1 + 0.5, 0.2 + 0.3, 0.25 + 0.6).asDiagonal();
-  moments -= 2.0 * skew(first - center) * skew(first - center) + 3.0 * skew(second - center) * skew(second - center);
+  moments -= 2.0 * crossMatrix(first - center) * crossMatrix(first - center) +
+             3.0 * crossMatrix(second - center) * crossMatrix(second - center);
   const RigidInertia& inertia = lumped.model.links[0].inertia;
   EXPECT_EQ(inertia.mass, 5.0);
   EXPECT_LT((inertia.center - center).norm(), 1e-15);

@@ -93,6 +93,8 @@ private:
   void findVelocities(const DelassusReduction& reduction, size_t first, size_t last);
   static void contract(const Member& mine, const double* value, int stride, double* result);
   bool standsAlone(const DelassusReduction& reduction, const Member& mine) const;
+  void forgetVelocities();
+  bool isCheap(const DelassusReduction& reduction, size_t first, size_t last, int rows);
   bool isDependent(const DelassusReduction& reduction, size_t first, size_t last);
   void fillGram(const DelassusReduction& reduction, int rows);
   void gather(const DelassusReduction& reduction, size_t first, size_t last, const Solution& solution);

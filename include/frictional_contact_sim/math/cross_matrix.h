@@ -1,9 +1,13 @@
 #pragma once
+/**
+ * @file cross_matrix.h
+ * @brief The cross product as a matrix.
+ */
 #include <Eigen/Core>
 
 namespace frictional_contact_sim
 {
-/** [x]x, so that [x]x y = x x y. */
+/** @brief [x]x, 3 x 3 and skew, so that [x]x y is the cross product of x and y. */
 inline Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& x)
 {
   Eigen::Matrix3d result;
