@@ -62,10 +62,10 @@ def has_placeholder(block):
     return any(PLACEHOLDER.search(re.sub(r'\s#.*', '', line)) for _, line in block.lines)
 
 
-def run_all(repo, with_long):
+def run_all(repo, documents, with_long):
     """Number of blocks run and findings; the commands of one block share a shell, files below /tmp are the document's."""
     done, found = 0, []
-    for document in repo.documents():
+    for document in documents:
         with tempfile.TemporaryDirectory(prefix='check_docs_') as scratch:
             for block in sh_blocks(repo, document):
                 if has_placeholder(block) or block.mode.startswith('not run') or (block.mode != '' and not with_long):

@@ -204,6 +204,15 @@ private:
     }
   }
 
+  /** Version 2.2 writes an element of two physical groups twice. */
+  bool isOfAnotherGroup(const std::array<int, 4>& cell, const std::vector<int>& groups)
+  {
+    if (is_version_4_ || groups.empty())
+      return false;
+    std::set<int>& before = groups_of_cell_[cell];
+    return before.insert(groups.front()).second && before.size() > 1;
+  }
+
   void addElement(int type, const std::vector<int>& groups)
   {
     const auto known =
@@ -220,7 +229,7 @@ private:
         fail("node " + std::to_string(tag), "a node of the file");
       cell[k] = found->second;
     }
-    if (known->dimension >= 2)
+    if (known->dimension >= 2 && !isOfAnotherGroup(cell, groups))
       cells_[known->dimension - 2].push_back(cell);
     for (const int group : groups)
       if (const auto name = names_.find({known->dimension, group}); name != names_.end())
@@ -319,6 +328,7 @@ private:
   bool is_version_4_ = false;
   std::map<std::pair<int, int>, std::string> names_;  ///< by dimension and tag
   std::map<std::pair<int, int>, std::vector<int>> groups_of_;  ///< entities: physical groups
+  std::map<std::array<int, 4>, std::set<int>> groups_of_cell_;  ///< version 2.2: the first physical tags of a cell
   std::map<long, int> index_;
   std::vector<Eigen::Vector3d> nodes_;
   std::array<std::vector<std::array<int, 4>>, 2> cells_;  ///< triangles, tetrahedra

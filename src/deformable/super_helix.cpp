@@ -87,9 +87,12 @@ SuperHelix::SuperHelix(const RodSpec& spec)
 {
   const double inertia = 0.25 * PI * std::pow(spec.radius, 4);
   const double piece = spec.length / spec.pieces;
-  const double shear = 0.5 * spec.young_modulus / (1.0 + spec.poisson_ratio);
   for (int i = 0; i < stiffness_.size(); ++i)
-    stiffness_[i] = piece * inertia * (i % 3 == 0 ? 2.0 * shear : spec.young_modulus);
+  {
+    const double young = spec.young_modulus.size() == 1 ? spec.young_modulus[0] : spec.young_modulus.at(i / 3);
+    const double shear = 0.5 * young / (1.0 + spec.poisson_ratio);
+    stiffness_[i] = piece * inertia * (i % 3 == 0 ? 2.0 * shear : young);
+  }
   std::vector<int> row;
   for (int i = 0; i < stiffness_.size(); ++i)
     row.push_back(i);

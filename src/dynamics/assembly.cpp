@@ -21,6 +21,10 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
     joint_body_.resize(joint_body_.size() + body.model.tree.joints.size(), static_cast<int>(&body - bodies_.data()));
   }
   acting_.resize(bodies_.size());
+  misses_.resize(bodies_.size());
+  last_bias_round_.resize(bodies_.size());
+  last_bias_.resize(velocities_);
+  last_miss_.resize(velocities_);
   // Entry (i, j) of M is structurally nonzero when one coordinate is the other's ancestor (Featherstone 2008, 6.3).
   mass_columns_.resize(velocities_);
   for (const Body& body : bodies_)
@@ -86,6 +90,7 @@ void StepAssembly::assembleRows(const StepContext& context)
         }
   }
   bias_rounds_ = 0;
+  std::fill(last_bias_round_.begin(), last_bias_round_.end(), -1);
 }
 
 void StepAssembly::makeGuess(const StepContext& context, Solution& guess, const Solution* answer) const

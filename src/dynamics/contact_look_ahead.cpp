@@ -158,9 +158,17 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
     row.normal = back[0].linear() * found.normal;
   const Eigen::Vector3d on_a = back[0] * found.position;
   const Eigen::Vector3d on_b = back[1] * found.position;
-  if (kind_a == FeatureKind::VERTEX && kind_b != FeatureKind::VERTEX)
+  const auto moves = [this](int handle)
+  {
+    const int body = world_.shape(handle).body;
+    return body >= 0 && bodies_[body].model.nv > 0;
+  };
+  // The point of what moves: during a step the two may part by more than the shapes' size.
+  const bool of_a = kind_a == FeatureKind::VERTEX && kind_b != FeatureKind::VERTEX;
+  const bool of_b = kind_b == FeatureKind::VERTEX && kind_a != FeatureKind::VERTEX;
+  if (!moves(found.shape_b) || (of_a && moves(found.shape_a)))
     row.position = on_a;
-  else if (kind_b == FeatureKind::VERTEX && kind_a != FeatureKind::VERTEX)
+  else if (!moves(found.shape_a) || of_b)
     row.position = on_b;
   else
     row.position = 0.5 * (on_a + on_b);

@@ -14,7 +14,8 @@ namespace
 constexpr double MINIMUM_MARGIN = 1e-3;  ///< contacts nearer than this are always known [m]
 constexpr double LOOSER = 100.0;  ///< so many times more may go through with each round after the strict ones
 constexpr double LOOSEST = 1e-5;
-constexpr int MOST_ROUNDS = 10;
+constexpr int MANY_ROUNDS = 10;  ///< after these a trace may be left
+constexpr int MOST_ROUNDS = 30;
 constexpr double TRACE = 1e-4;  ///< times the size: left after the most rounds, it is the next step's to mend
 
 /** Sum over the coordinates of a link of direction . (motion of the point), velocities from `v` (of the body). */
@@ -248,8 +249,10 @@ ContactSet::Look ContactSet::lookAgain(const StepContext& context, const Eigen::
   }
   if (!changed)
     return Look::CONTENT;
+  if (rounds_ >= MANY_ROUNDS && (worst_ <= TRACE || is_lenient_))
+    return Look::CONTENT;
   if (rounds_ == MOST_ROUNDS)
-    return worst_ > TRACE && !is_lenient_ ? Look::GIVEN_UP : Look::CONTENT;
+    return Look::GIVEN_UP;
   ++rounds_;
   last_points_.swap(points_);
   takePoints();

@@ -10,7 +10,13 @@ namespace frictional_contact_sim
 {
 namespace
 {
-constexpr int MOST_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last
+constexpr int GUESS_ROUNDS = 5;  ///< for the motion without any row
+constexpr int PLAIN_ROUNDS = 3;  ///< of a step, since rows changed last, that take the bias as it is
+constexpr int DAMPED_ROUNDS =
+    6;  ///< from here on half of a change is taken: contacts that open and close stop the swing
+constexpr int CAREFUL_ROUNDS = 10;  ///< and a quarter
+constexpr int MANY_BIAS_ROUNDS = 5;  ///< after these it need not be settled
+constexpr int MOST_BIAS_ROUNDS = 30;
 constexpr double UNSETTLED = 1e-2;  ///< times the step's change of speed: what a bias may miss after the most rounds
 constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
 constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
@@ -74,7 +80,7 @@ void StepAssembly::predict(const StepContext& context, Body& body)
   if (acting_[body_of_[body.v_offset]])
     return;
   const double allowed = std::max(context.tolerance, BIAS_ROUND_OFF) * body.speed_change;
-  for (int round = 0; round < MOST_BIAS_ROUNDS; ++round)
+  for (int round = 0; round < GUESS_ROUNDS; ++round)
   {
     body.v_middle = 0.5 * (body.v_start + body.v_free);
     computeBias(body, body.v_middle, context.gravity, body.bias);
@@ -132,43 +138,78 @@ double StepAssembly::freeMiss(const StepContext& context, const Solution& soluti
   return change / allowed;
 }
 
-/** The bias of every body to the mean velocity of an answer, unless it is the last try. @return the largest miss */
-double StepAssembly::moveBias(const StepContext& context, const Solution& solution, bool is_last)
+/** Of every body, in units of what it may: misses_, with Body::next_bias. @return the largest */
+double StepAssembly::missBias(const StepContext& context, const Solution& solution)
 {
   double worst = 0.0;
   findActing(solution);
-  for (Body& body : bodies_)
+  for (size_t b = 0; b < bodies_.size(); ++b)
   {
-    const int nv = body.model.nv;
-    const bool free = nv > 0 && body.model.free_link && !acting_[body_of_[body.v_offset]];
-    const double miss = nv == 0 ? 0.0 : free ? freeMiss(context, solution, body) : biasMiss(context, solution, body);
-    if (!std::isfinite(miss))
-      return miss;
-    worst = std::max(worst, miss);
-    if (miss == 0.0 || is_last)
-      continue;
-    force_.segment(body.v_offset, nv) += context.dt * (body.next_bias - body.bias);
-    body.bias = body.next_bias;
+    Body& body = bodies_[b];
+    const bool free = body.model.free_link && !acting_[b];
+    misses_[b] = body.model.nv == 0 ? 0.0
+                 : free             ? freeMiss(context, solution, body)
+                                    : biasMiss(context, solution, body);
+    if (!std::isfinite(misses_[b]))
+      return misses_[b];
+    worst = std::max(worst, misses_[b]);
   }
   return worst;
 }
 
+/** The bias of the bodies that miss to that of the mean velocity of the answer. */
+void StepAssembly::moveBias(const StepContext& context)
+{
+  for (size_t b = 0; b < bodies_.size(); ++b)
+  {
+    if (misses_[b] == 0.0)
+      continue;
+    Body& body = bodies_[b];
+    accelerate(body, last_bias_round_[b]);
+    force_.segment(body.v_offset, body.model.nv) += context.dt * (body.next_bias - body.bias);
+    body.bias = body.next_bias;
+  }
+}
+
+/**
+ * Body::next_bias after some rounds: fixed-point iteration alone diverges where a soft rod cracks like a whip, and
+ * swings between two answers. Source: Anderson (1965), of depth one; then damped.
+ */
+void StepAssembly::accelerate(Body& body, int& last_round)
+{
+  auto last_bias = last_bias_.segment(body.v_offset, body.model.nv);  // as computed
+  auto last_miss = last_miss_.segment(body.v_offset, body.model.nv);
+  body.change = body.next_bias - body.bias;
+  if (bias_rounds_ >= DAMPED_ROUNDS)
+    body.next_bias = body.bias + (bias_rounds_ >= CAREFUL_ROUNDS ? 0.25 : 0.5) * body.change;
+  else if (bias_rounds_ >= PLAIN_ROUNDS && last_round == bias_rounds_ - 1)
+  {
+    const double share = body.change.dot(body.change - last_miss) / (body.change - last_miss).squaredNorm();
+    if (std::isfinite(share))
+      body.next_bias -= share * (body.next_bias - last_bias);
+  }
+  last_bias = body.bias + body.change;
+  last_miss = body.change;
+  last_round = bias_rounds_;
+}
+
 void StepAssembly::followAnswer(const StepContext& context, const Solution& solution)
 {
-  if (!context.impact)
-    moveBias(context, solution, false);
+  if (!context.impact && std::isfinite(missBias(context, solution)))
+    moveBias(context);
 }
 
 Again StepAssembly::biasAgain(const StepContext& context, const Solution& solution)
 {
-  const bool last = bias_rounds_ == MOST_BIAS_ROUNDS;
-  const double worst = moveBias(context, solution, last);
-  if (worst == 0.0 || (last && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
+  const double worst = missBias(context, solution);
+  const bool may_end = bias_rounds_ >= MANY_BIAS_ROUNDS;
+  if (worst == 0.0 || (may_end && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
-  ++bias_rounds_;
-  if (last || !std::isfinite(worst))
+  if (bias_rounds_ == MOST_BIAS_ROUNDS || !std::isfinite(worst))
     return Again::NEVER;
+  moveBias(context);
+  ++bias_rounds_;
   problem_.f.head(velocities_) = force_;
   return Again::FORCES;
 }

@@ -256,9 +256,12 @@ MarkerScale markerScale(const Simulator& simulator, double force_scale)
     const std::vector<Eigen::Isometry3d>& poses = simulator.data(body).link_pose;
     Eigen::AlignedBox3d box;
     double mass = 0.0;
-    if (simulator.workspace(body).model.solid)
+    if (const DynamicBody* solid = simulator.workspace(body).model.solid.get())
+    {
+      mass = solid->totalMass();
       for (size_t link = 1; link < poses.size(); ++link)
         box.extend(poses[link].translation());
+    }
     for (size_t link = 0; link < model.links.size(); ++link)
       if (moves(model, link))
       {

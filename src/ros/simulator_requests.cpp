@@ -18,6 +18,7 @@ void SimulatorNode::advertiseRequests()
                            [this](const auto& request, auto& response)
                            {
                              restoreState(request, saved_state_, simulator_, response);
+                             commands_.forgetPending();  // as in another process, which has none
                              followSettings(parameters_.real_time_factor);
                              reconfiguration_->update();
                              showSetState();

@@ -106,6 +106,17 @@ std::vector<double> readCurvatures(const ConfigNode& node, int pieces)
   return values;
 }
 
+/** A number, or a list of one a piece. */
+std::vector<double> readYoungModulus(const ConfigNode& node, int pieces)
+{
+  if (!node.isList())
+    return {node.number(positive())};
+  std::vector<double> values = node.numbers(positive());
+  if (static_cast<int>(values.size()) != pieces)
+    node.failExpecting("a number, or one for each of " + std::to_string(pieces) + " pieces");
+  return values;
+}
+
 RodSpec readRod(const ConfigNode& node)
 {
   RodSpec rod;
@@ -113,7 +124,8 @@ RodSpec readRod(const ConfigNode& node)
   node.readMap({required(key("length", rod.length, positive())), required(key("radius", rod.radius, positive())),
                 key("pieces", rod.pieces, 1, MOST_PIECES), key("sections", rod.sections, 1, MOST_PIECES),
                 required(key("density", rod.density, positive())),
-                required(key("young_modulus", rod.young_modulus, positive())),
+                required(key("young_modulus", [&](const ConfigNode& value)
+                             { rod.young_modulus = readYoungModulus(value, rod.pieces); })),
                 key("poisson_ratio", rod.poisson_ratio, between(0.0, 0.5)), key("damping", rod.damping, notNegative()),
                 key("natural", [&](const ConfigNode& value) { rod.natural = readCurvatures(value, rod.pieces); }),
                 key("start", [&](const ConfigNode& value) { rod.start = readCurvatures(value, rod.pieces); })});

@@ -301,6 +301,21 @@ TEST_F(FileTest, BothGmshFormatsGiveTheSameMesh)
   }
 }
 
+TEST_F(FileTest, AGmsh22CellOfTwoPhysicalGroupsIsOneCellOfBoth)
+{
+  std::string text = SQUARE_22;
+  const auto put = [&text](const std::string& what, const std::string& by)
+  { text.replace(text.find(what), what.size(), by); };
+  put("$PhysicalNames\n2\n", "$PhysicalNames\n3\n2 9 \"half\"\n");
+  put("$Elements\n4\n", "$Elements\n5\n");
+  put("4 2 2 8 1 1 3 4\n", "4 2 2 8 1 1 3 4\n5 2 2 9 1 1 3 4\n");
+  const ElasticMesh mesh = readGmsh(write("square.msh", text));
+  EXPECT_EQ(mesh.cells.size(), 2u);
+  EXPECT_EQ(mesh.groups.at("half"), (std::vector<int>{0, 2, 3}));
+  put("5 2 2 9", "5 2 2 8");
+  EXPECT_NE(messageOf(write("square.msh", text)), "no error") << "twice in one group";
+}
+
 TEST_F(FileTest, BrokenGmshFilesAreNamedWithTheirLine)
 {
   const std::string good = SQUARE_22;

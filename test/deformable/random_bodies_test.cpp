@@ -225,10 +225,15 @@ TEST_P(RandomBodiesTest, NothingPassesNothingIsGainedAndForcesMakeTheMomentum)
   ASSERT_TRUE(simulator.outcome().converged());
   const EnergyLedger& energy = simulator.report().energy;
   bool is_moved = scene.is_driven;
+  bool has_rods = false;
   for (int body = 0; body < simulator.bodyCount(); ++body)
   {
     is_moved = is_moved || scene.scenario.bodies[body].motion.has_value();
+    has_rods = has_rods || isRod(simulator, body);
   }
+  // Without rods every force of the step is constant or at the midpoint: the ledger closes but for rounding. A rod's
+  // mass matrix turns with it, and its scheme is of second order in the step.
+  const double open_share = has_rods ? 5e-3 : 1e-11;
   double exchanged = 1e-3;
   double least = energy.kinetic + energy.potential;
   int forces = 0;
@@ -254,9 +259,11 @@ TEST_P(RandomBodiesTest, NothingPassesNothingIsGainedAndForcesMakeTheMomentum)
       forces += contact.impulse.norm() > 0.0;
     }
     exchanged = std::max(exchanged, energy.kinetic + energy.friction + energy.impact + energy.joints);
-    ASSERT_LT(std::abs(energy.balance_error), 1e-2 * exchanged) << "step " << step;
+    ASSERT_LT(std::abs(energy.balance_error), open_share * exchanged) << "step " << step;
     if (!is_moved)
     {
+      // What a step gains is what normal impulses put in where the curvature of a path in the step before is pushed
+      // out.
       ASSERT_LT(energy.kinetic + energy.potential, least + 1e-2 * exchanged) << "step " << step;
     }
     least = std::min(least, energy.kinetic + energy.potential);

@@ -1,5 +1,5 @@
 // Rods at rest and in small motion against equations of Kirchhoff's rod that are solved here: elastica, curved and
-// twisted rods under their weight, frequencies of a hanging rod from beam to chain.
+// twisted rods under their weight, frequencies of a hanging rod from beam to chain, a stiff rod's pendulum.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -11,11 +11,14 @@
 
 #include "frictional_contact_sim/deformable/elastic_spec.h"
 #include "frictional_contact_sim/simulation/simulator.h"
+#include "support/dice.h"
 
 namespace frictional_contact_sim
 {
 namespace
 {
+using test_support::text;
+
 constexpr double PI = 3.141592653589793;
 constexpr double GRAVITY = 9.81;
 
@@ -28,13 +31,13 @@ RodSpec rodOf(double load, int pieces, int sections)
   spec.pieces = pieces;
   spec.sections = sections;
   spec.density = 1300.0;
-  spec.young_modulus = 4.0 * spec.density * GRAVITY * std::pow(spec.length, 3) / (std::pow(spec.radius, 2) * load);
+  spec.young_modulus = {4.0 * spec.density * GRAVITY * std::pow(spec.length, 3) / (std::pow(spec.radius, 2) * load)};
   return spec;
 }
 
 double bendingStiffness(const RodSpec& spec)
 {
-  return spec.young_modulus * 0.25 * PI * std::pow(spec.radius, 4);
+  return spec.young_modulus[0] * 0.25 * PI * std::pow(spec.radius, 4);
 }
 
 double weightPerLength(const RodSpec& spec)
@@ -279,6 +282,79 @@ TEST(HangingRodTest, SwingsBetweenBeamAndChain)
       EXPECT_NEAR(std::log2(errors[k - 1] / errors[k]), 2.0, 0.5) << load;
     EXPECT_LT(errors.back(), 2e-3) << load;
   }
+}
+
+/** Time of the third passage through the vertical of the last section's axis, or of the last link's [s]. */
+double thirdPassage(Simulator& simulator)
+{
+  const auto angle = [&]
+  {
+    const Eigen::Vector3d axis = simulator.data(0).link_pose.back().linear().col(0);
+    return std::atan2(axis.x(), -axis.z());
+  };
+  double before = angle();
+  for (int passages = 0; simulator.time() < 5.0;)
+  {
+    EXPECT_TRUE(simulator.step().converged());
+    const double after = angle();
+    if (before * after < 0.0 && ++passages == 3)
+      return simulator.time() - simulator.scenario().time_step * after / (after - before);
+    before = after;
+  }
+  return 0.0;
+}
+
+/** A rigid rod from its hinge down, as thick as `spec`. */
+Simulator rigidPendulum(const RodSpec& spec, double angle, double time_step)
+{
+  const double mass = spec.density * PI * spec.radius * spec.radius * spec.length;
+  const double across = mass * (std::pow(spec.length, 2) / 12.0 + 0.25 * std::pow(spec.radius, 2));
+  const std::string inertial = "<inertial><origin xyz='" + text(0.5 * spec.length) + " 0 0'/><mass value='" +
+                               text(mass) + "'/><inertia ixx='" + text(0.5 * mass * std::pow(spec.radius, 2)) +
+                               "' ixy='0' ixz='0' iyy='" + text(across) + "' iyz='0' izz='" + text(across) +
+                               "'/></inertial>";
+  Scenario scenario;
+  scenario.time_step = time_step;
+  BodySpec body;
+  body.name = "pendulum";
+  body.base = BaseType::FIXED;
+  body.urdf_xml = "<robot name='p'><link name='root'/><link name='rod'>" + inertial +
+                  "</link><joint name='hinge' type='continuous'><parent link='root'/><child link='rod'/><axis xyz='0 1 "
+                  "0'/></joint></robot>";
+  body.joints["hinge"].position = 0.5 * PI - angle;  // turns x towards -z
+  scenario.bodies.push_back(body);
+  return Simulator(scenario);
+}
+
+TEST(RodOraclesTest, StiffRodOnASoftPieceSwingsAsTheRigidPendulum)
+{
+  // The first piece, of length e L, bends without resistance to speak of and stands for the hinge. As an arc of uniform
+  // curvature it turns about its middle, but lifts what hangs on it as a hinge at a third of it would: with moments
+  // 1/3 - e/2 and 1/2 - 2/3 e the square of the period is less by e/6.
+  constexpr double STEP = 1e-3;
+  constexpr double START = 0.3;  // [rad]
+  Simulator rigid = rigidPendulum(rodOf(1e-4, 1, 1), START, STEP);
+  const double exact = thirdPassage(rigid);
+  const double small_swing = 2.0 * PI * std::sqrt(2.0 * 0.2 / (3.0 * GRAVITY));
+  EXPECT_NEAR(exact, 1.25 * small_swing * (1.0 + START * START / 16.0), 1e-3 * exact);
+  std::vector<double> times;
+  for (const int pieces : {4, 8, 16})
+  {
+    RodSpec spec = rodOf(1e-4, pieces, 256 / pieces);
+    spec.young_modulus.resize(pieces, spec.young_modulus[0]);
+    spec.young_modulus[0] = 1.0;
+    spec.start.assign(3 * pieces, 0.0);
+    spec.start[1] = START * pieces / spec.length;
+    Simulator rod = makeSimulator(spec, Eigen::AngleAxisd(0.5 * PI, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                                  Regime::DYNAMIC, STEP);
+    times.push_back(thirdPassage(rod));
+    EXPECT_NEAR((1.0 - times.back() / exact) * 12.0 * pieces, 1.0, 0.15) << pieces;
+  }
+  // With what is of order one taken out the rest is of order two.
+  const double coarse = 2.0 * times[1] - times[0] - exact;
+  const double fine = 2.0 * times[2] - times[1] - exact;
+  EXPECT_LT(std::abs(fine), 5e-4 * exact);
+  EXPECT_NEAR(std::log2(std::abs(coarse / fine)), 2.0, 0.5);
 }
 
 }  // namespace

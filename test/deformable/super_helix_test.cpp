@@ -24,7 +24,7 @@ RodSpec hair(int pieces, int sections)
   spec.pieces = pieces;
   spec.sections = sections;
   spec.density = 1300.0;
-  spec.young_modulus = 1.0e7;
+  spec.young_modulus = {1.0e7};
   return spec;
 }
 

@@ -8,6 +8,8 @@ import rostest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from frictional_contact_sim.srv import LoadState, SaveState
+from node_runner import NAME
 from stepped_node import ARM, DT, SteppedNode, value
 
 
@@ -106,6 +108,11 @@ class CommandModesTest(unittest.TestCase):
         self.arm.give("command/effort", effort(8.0, self.arm.now() + rospy.Duration(0.01)))
         self.arm.call("reset")
         self.assertNotEqual(8.0, value(self.arm.step(20), "effort", "yaw"))
+        # So does a state that is loaded, here as in a process that has got none.
+        rospy.ServiceProxy(NAME + "/save_state", SaveState)("")
+        self.arm.give("command/effort", effort(9.0, self.arm.now() + rospy.Duration(0.01)))
+        self.assertTrue(rospy.ServiceProxy(NAME + "/load_state", LoadState)("").success)
+        self.assertNotEqual(9.0, value(self.arm.step(20), "effort", "yaw"))
 
     def test_the_queue_of_commands_for_later_is_bounded(self):
         message = JointState(name=["yaw"], effort=[1.0])

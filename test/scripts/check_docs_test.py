@@ -162,7 +162,7 @@ class CommandsAreRunTest(unittest.TestCase):
             root = pathlib.Path(folder)
             (root / 'README.md').write_text(f'{mark}\n```sh\n{commands}\n```\n')
             repo = check_docs.repository.Repository(root, root / 'devel')
-            return check_docs.blocks.run_all(repo, True)
+            return check_docs.blocks.run_all(repo, repo.documents(), True)
 
     def test_exit_codes_count(self):
         self.assertEqual((1, []), self.run_block('', 'true\necho x > /tmp/x\ncat /tmp/x'))

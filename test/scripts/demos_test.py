@@ -87,7 +87,7 @@ class DemosTest(unittest.TestCase):
 
     def test_every_demo_has_its_page_and_picture(self):
         page = (ROOT / 'docs/demos.md').read_text()
-        self.assertEqual(13, len(launch_files()))
+        self.assertEqual(14, len(launch_files()))
         for launch_file in launch_files():
             self.assertIn(f'{launch_file.stem}.launch', page)
             self.assertIn(f'images/demo_{launch_file.stem}.png', page)

@@ -34,7 +34,7 @@ public:
   const Eigen::VectorXd& carried(int axis) const { return carried_[axis]; }  ///< n: M times a unit translation [kg]
   const SparseRows& mass() const { return mass_; }  ///< n x n, of the free nodes [kg]
   const SparseRows& stiffness() const { return stiffness_; }  ///< n x n [N/m]
-  double totalMass() const { return total_mass_; }  ///< [kg]
+  double totalMass() const override { return total_mass_; }  ///< [kg]
   /** @brief Displacement of every node at q, body axes [m]; v gives velocities. */
   std::vector<Eigen::Vector3d> displacements(const VectorIn& q) const;
   /** @brief v of a rigid motion in body axes, supports at rest. */

@@ -32,7 +32,7 @@ struct RodSpec
   int pieces = 6;  ///< >= 1
   int sections = 8;  ///< a piece, >= 1
   double density = 0.0;  ///< [kg/m^3] > 0
-  double young_modulus = 0.0;  ///< [Pa] > 0
+  std::vector<double> young_modulus;  ///< [Pa] > 0: one for all pieces or one a piece
   double poisson_ratio = 0.5;  ///< [-] in [0, 0.5]
   double damping = 0.0;  ///< D = damping K [s] >= 0
   std::vector<double>
@@ -58,6 +58,7 @@ public:
   const Eigen::VectorXd& stiffness() const { return stiffness_; }  ///< 3 pieces: the diagonal of K
 
   int velocities() const override { return static_cast<int>(stiffness_.size()); }
+  double totalMass() const override { return line_mass_ * spec_.pieces * spec_.sections; }
   bool isSupported() const override { return true; }
   const std::vector<std::vector<int>>& massColumns() const override { return columns_; }
   std::unique_ptr<BodyWork> makeWork() const override;

@@ -96,7 +96,9 @@ private:
   void predict(const StepContext& context, Body& body);
   void findLastActing(const StepContext& context);
   void findActing(const Solution& solution);
-  double moveBias(const StepContext& context, const Solution& solution, bool is_last);
+  double missBias(const StepContext& context, const Solution& solution);
+  void moveBias(const StepContext& context);
+  void accelerate(Body& body, int& last_round);
   Again biasAgain(const StepContext& context, const Solution& solution);
   double biasMiss(const StepContext& context, const Solution& solution, Body& body);
   double freeMiss(const StepContext& context, const Solution& solution, Body& body);
@@ -122,6 +124,10 @@ private:
   int joint_rows_ = 0;  ///< first row of a joint; contacts come before
   int last_joint_rows_ = 0;  ///< the same of the problem that was solved last
   int bias_rounds_ = 0;  ///< since rows changed last
+  std::vector<double> misses_;  ///< bodies: see missBias
+  Eigen::VectorXd last_bias_;  ///< velocities_: at the answer of the round before
+  Eigen::VectorXd last_miss_;  ///< the same less what that round was solved with
+  std::vector<int> last_bias_round_;  ///< bodies: the round of these
   RowSink sink_;
   RowBuilder rows_m_;
   std::vector<std::vector<int>> mass_columns_;  ///< tree pattern of M, row by row

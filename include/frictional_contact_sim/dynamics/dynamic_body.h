@@ -61,6 +61,7 @@ public:
   virtual ~DynamicBody() = default;
 
   virtual int velocities() const = 0;  ///< n
+  virtual double totalMass() const = 0;  ///< [kg]
   virtual bool isSupported() const = 0;  ///< some of it is fixed to its base, which does not move by itself
   /** @brief Columns of the entries of M_h, row by row, ascending. */
   virtual const std::vector<std::vector<int>>& massColumns() const = 0;
