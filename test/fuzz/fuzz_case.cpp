@@ -1,10 +1,12 @@
 #include "fuzz_case.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "frictional_contact_sim/deformable/elastic_mesh.h"
 #include "frictional_contact_sim/problem/fclib.h"
 #include "frictional_contact_sim/problem/random_family.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
@@ -65,6 +67,15 @@ bodies:
     disable_collisions: [[l0, l1]]
     min_joint_inertia: 1.0e-6
   - {name: belt, urdf: belt.urdf, base: fixed, pose: {xyz: [3, 0, 0.2]}, motion: {linear: [0.1, 0, 0]}}
+  - name: hair
+    rod: {length: 0.2, radius: 0.002, pieces: 2, sections: 2, density: 1300, young_modulus: [1.0e7, 2.0e7],
+          damping: 0.001, natural: [0, 1, 0]}
+    pose: {xyz: [5, 0, 0.4]}
+    motion: {type: sine, axis: [1, 0, 0], amplitude: 0.01, frequency: 2}
+  - name: jelly
+    elastic: {box: [0.1, 0.1], cells: [2, 2], young_modulus: 1.0e6, poisson_ratio: 0.3, density: 1000, damping: 0.001,
+              fixed: [bottom]}
+    pose: {xyz: [6, 0, 0.2]}
 )";
 
 const char* const ROBOT =
@@ -119,6 +130,86 @@ std::string fclibFile(Dice& dice, const fs::path& path)
   options.seed = static_cast<std::uint64_t>(dice.integer(0, 1000));
   writeFclib(path.string(), randomFamilyProblem(options), {"fuzz", "a valid problem", ""});
   return readFile(path);
+}
+
+/** A rectangle or a block above the ground. @param source of its `elastic` */
+std::string elasticScenario(const std::string& source)
+{
+  return "time_step: 0.001\nground: {friction: 0.8}\nbodies:\n  - {name: jelly, elastic: {" + source +
+         "}, pose: {xyz: [0, 0, 0.2]}}\n";
+}
+
+ElasticMesh smallElasticMesh(Dice& dice)
+{
+  return dice.chance(0.5) ? boxMesh({0.2, 0.1}, {dice.integer(1, 4), dice.integer(1, 3)})
+                          : boxMesh({0.2, 0.1, 0.1}, {dice.integer(1, 2), 1, dice.integer(1, 2)});
+}
+
+std::string gmshFile(const ElasticMesh& mesh, Dice& dice)
+{
+  std::ostringstream file;
+  const bool is_plane = mesh.dimension == 2;
+  const int corners = mesh.dimension + 1;
+  const int type = is_plane ? 2 : 4;
+  const size_t count = mesh.nodes.size();
+  const bool is_version_4 = dice.chance(0.5);
+  const std::string group = "$PhysicalNames\n1\n" + std::to_string(mesh.dimension) + " 7 \"body\"\n$EndPhysicalNames\n";
+  const auto place = [&](const Eigen::Vector3d& node)
+  { return is_plane ? text(Eigen::Vector3d(node.x(), node.z(), 0.0)) : text(node); };
+  file << "$MeshFormat\n" << (is_version_4 ? "4.1" : "2.2") << " 0 8\n$EndMeshFormat\n" << group << "$Nodes\n";
+  if (is_version_4)
+  {
+    file << "1 " << count << " 1 " << count << "\n" << mesh.dimension << " 1 0 " << count << "\n";
+    for (size_t k = 1; k <= count; ++k)
+      file << k << "\n";
+    for (const Eigen::Vector3d& node : mesh.nodes)
+      file << place(node) << "\n";
+  }
+  else
+  {
+    file << count << "\n";
+    for (size_t k = 0; k < count; ++k)
+      file << k + 1 << " " << place(mesh.nodes[k]) << "\n";
+  }
+  file << "$EndNodes\n$Elements\n";
+  if (is_version_4)
+    file << "1 " << mesh.cells.size() << " 1 " << mesh.cells.size() << "\n" << mesh.dimension << " 1 " << type << " ";
+  file << mesh.cells.size() << "\n";
+  for (size_t k = 0; k < mesh.cells.size(); ++k)
+  {
+    file << k + 1;
+    if (!is_version_4)
+      file << " " << type << " 2 7 1";
+    for (int corner = 0; corner < corners; ++corner)
+      file << " " << mesh.cells[k][static_cast<size_t>(corner)] + 1;
+    file << "\n";
+  }
+  file << "$EndElements\n";
+  return file.str();
+}
+
+std::string marketFile(const SparseRows& matrix)
+{
+  std::ostringstream entries;
+  int count = 0;
+  for (int row = 0; row < matrix.rows(); ++row)
+    for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
+      if (entry.col() <= row)
+      {
+        entries << row + 1 << " " << entry.col() + 1 << " " << text(entry.value()) << "\n";
+        ++count;
+      }
+  return "%%MatrixMarket matrix coordinate real symmetric\n" + std::to_string(matrix.rows()) + " " +
+         std::to_string(matrix.cols()) + " " + std::to_string(count) + "\n" + entries.str();
+}
+
+std::string nodeTable(const ElasticParts& parts)
+{
+  std::string table = "x,y,z,surface,fixed\n";
+  for (size_t k = 0; k < parts.nodes.size(); ++k)
+    table += text(parts.nodes[k], ",") + "," +
+             std::to_string(std::count(parts.surface.begin(), parts.surface.end(), static_cast<int>(k))) + ",0\n";
+  return table;
 }
 
 FuzzCase makeScene(std::uint32_t seed)
@@ -187,7 +278,7 @@ std::string solveFclib(const std::string& path)
 
 const char* toString(FuzzInput input)
 {
-  static const char* const NAMES[] = {"urdf", "scenario", "obj", "stl", "fclib"};
+  static const char* const NAMES[] = {"urdf", "scenario", "obj", "stl", "fclib", "gmsh", "matrices"};
   return NAMES[static_cast<size_t>(input)];
 }
 
@@ -235,6 +326,26 @@ FuzzCase makeFuzzCase(FuzzInput input, std::uint32_t seed, const std::string& sc
       is_binary = true;
       files.files = {{target, fclibFile(dice, scratch + "/valid.hdf5")}};
       break;
+    case FuzzInput::GMSH:
+      target = "mesh.msh";
+      files.files = {
+          {"scene.yaml", elasticScenario("mesh: mesh.msh, young_modulus: 1e6, poisson_ratio: 0.3, density: 1000")},
+          {target, gmshFile(smallElasticMesh(dice), dice)}};
+      break;
+    case FuzzInput::MATRICES:
+    {
+      ElasticMaterial material;
+      material.young_modulus = 1e6;
+      material.poisson_ratio = 0.3;
+      material.density = 1000.0;
+      const ElasticParts parts = assembleElastic(smallElasticMesh(dice), material);
+      files.files = {{"scene.yaml", elasticScenario("mass: M.mtx, stiffness: K.mtx, nodes: nodes.csv")},
+                     {"M.mtx", marketFile(parts.mass)},
+                     {"K.mtx", marketFile(parts.stiffness)},
+                     {"nodes.csv", nodeTable(parts)}};
+      target = std::array<const char*, 3>{"M.mtx", "K.mtx", "nodes.csv"}[static_cast<size_t>(dice.integer(0, 2))];
+      break;
+    }
   }
   files.files[target] = mutate(files.files[target], is_binary, dice);
   return files;

@@ -17,7 +17,9 @@ enum class FuzzInput
   SCENARIO,
   OBJ,
   STL,
-  FCLIB
+  FCLIB,
+  GMSH,
+  MATRICES  ///< one of: mass, stiffness, table of nodes
 };
 const char* toString(FuzzInput input);
 

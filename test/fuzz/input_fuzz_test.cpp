@@ -130,7 +130,7 @@ TEST_P(InputFuzzTest, DamagedFilesAreTakenOrNamedInOneLine)
 
 INSTANTIATE_TEST_SUITE_P(Kinds, InputFuzzTest,
                          testing::Values(FuzzInput::URDF, FuzzInput::SCENARIO, FuzzInput::OBJ, FuzzInput::STL,
-                                         FuzzInput::FCLIB),
+                                         FuzzInput::FCLIB, FuzzInput::GMSH, FuzzInput::MATRICES),
                          [](const auto& info) { return std::string(toString(info.param)); });
 
 /** HDF5 files hold times of writing. */
@@ -138,7 +138,8 @@ TEST(FuzzCaseTest, SameSeedSameFiles)
 {
   const std::string folder = (fs::temp_directory_path() / ("fuzz_same_" + std::to_string(getpid()))).string();
   fs::create_directories(folder);
-  for (const FuzzInput input : {FuzzInput::URDF, FuzzInput::SCENARIO, FuzzInput::OBJ, FuzzInput::STL})
+  for (const FuzzInput input :
+       {FuzzInput::URDF, FuzzInput::SCENARIO, FuzzInput::OBJ, FuzzInput::STL, FuzzInput::GMSH, FuzzInput::MATRICES})
     for (std::uint32_t seed = 0; seed < 5; ++seed)
       EXPECT_EQ(test_support::makeFuzzCase(input, seed, folder).files,
                 test_support::makeFuzzCase(input, seed, folder).files);
