@@ -158,17 +158,23 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
     row.normal = back[0].linear() * found.normal;
   const Eigen::Vector3d on_a = back[0] * found.position;
   const Eigen::Vector3d on_b = back[1] * found.position;
-  const auto moves = [this](int handle)
+  const auto bodyOf = [this](int handle)
   {
     const int body = world_.shape(handle).body;
-    return body >= 0 && bodies_[body].model.nv > 0;
+    return body < 0 ? nullptr : &bodies_[static_cast<size_t>(body)].model;
   };
-  // The point of what moves: during a step the two may part by more than the shapes' size.
-  const bool of_a = kind_a == FeatureKind::VERTEX && kind_b != FeatureKind::VERTEX;
-  const bool of_b = kind_b == FeatureKind::VERTEX && kind_a != FeatureKind::VERTEX;
-  if (!moves(found.shape_b) || (of_a && moves(found.shape_a)))
+  // A deformable body on what only a program moves: in a step of a thin rod the two may part by more than its size.
+  const auto isAlone = [&](int handle, int other)
+  {
+    const BodyModel* one = bodyOf(handle);
+    const BodyModel* beside = bodyOf(other);
+    return one != nullptr && one->solid && (beside == nullptr || beside->nv == 0);
+  };
+  if (isAlone(found.shape_b, found.shape_a))
+    row.position = on_b;
+  else if (isAlone(found.shape_a, found.shape_b) || (kind_a == FeatureKind::VERTEX && kind_b != FeatureKind::VERTEX))
     row.position = on_a;
-  else if (!moves(found.shape_a) || of_b)
+  else if (kind_b == FeatureKind::VERTEX && kind_a != FeatureKind::VERTEX)
     row.position = on_b;
   else
     row.position = 0.5 * (on_a + on_b);

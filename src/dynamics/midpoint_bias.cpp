@@ -12,11 +12,10 @@ namespace
 {
 constexpr int GUESS_ROUNDS = 5;  ///< for the motion without any row
 constexpr int PLAIN_ROUNDS = 3;  ///< of a step, since rows changed last, that take the bias as it is
-constexpr int DAMPED_ROUNDS =
-    6;  ///< from here on half of a change is taken: contacts that open and close stop the swing
-constexpr int CAREFUL_ROUNDS = 10;  ///< and a quarter
-constexpr int MANY_BIAS_ROUNDS = 5;  ///< after these it need not be settled
-constexpr int MOST_BIAS_ROUNDS = 30;
+constexpr int MANY_BIAS_ROUNDS = 5;  ///< after these it need not be settled wholly
+constexpr int DAMPED_ROUNDS = 6;  ///< from here on half of a change is taken, as contacts come and go with it
+constexpr int CAREFUL_ROUNDS = 10;  ///< and from here on a quarter
+constexpr int MOST_BIAS_ROUNDS = 30;  ///< where a deformable body misses; trees settle in a few or not at all
 constexpr double UNSETTLED = 1e-2;  ///< times the step's change of speed: what a bias may miss after the most rounds
 constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
 constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
@@ -157,6 +156,14 @@ double StepAssembly::missBias(const StepContext& context, const Solution& soluti
   return worst;
 }
 
+bool StepAssembly::missesSolid() const
+{
+  for (size_t b = 0; b < bodies_.size(); ++b)
+    if (misses_[b] > 0.0 && bodies_[b].model.solid)
+      return true;
+  return false;
+}
+
 /** The bias of the bodies that miss to that of the mean velocity of the answer. */
 void StepAssembly::moveBias(const StepContext& context)
 {
@@ -182,7 +189,7 @@ void StepAssembly::accelerate(Body& body, int& last_round)
   body.change = body.next_bias - body.bias;
   if (bias_rounds_ >= DAMPED_ROUNDS)
     body.next_bias = body.bias + (bias_rounds_ >= CAREFUL_ROUNDS ? 0.25 : 0.5) * body.change;
-  else if (bias_rounds_ >= PLAIN_ROUNDS && last_round == bias_rounds_ - 1)
+  else if (body.model.solid && bias_rounds_ >= PLAIN_ROUNDS && last_round == bias_rounds_ - 1)
   {
     const double share = body.change.dot(body.change - last_miss) / (body.change - last_miss).squaredNorm();
     if (std::isfinite(share))
@@ -206,7 +213,7 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
   if (worst == 0.0 || (may_end && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
-  if (bias_rounds_ == MOST_BIAS_ROUNDS || !std::isfinite(worst))
+  if (bias_rounds_ == (missesSolid() ? MOST_BIAS_ROUNDS : MANY_BIAS_ROUNDS) || !std::isfinite(worst))
     return Again::NEVER;
   moveBias(context);
   ++bias_rounds_;

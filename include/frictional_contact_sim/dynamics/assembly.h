@@ -97,6 +97,7 @@ private:
   void findLastActing(const StepContext& context);
   void findActing(const Solution& solution);
   double missBias(const StepContext& context, const Solution& solution);
+  bool missesSolid() const;
   void moveBias(const StepContext& context);
   void accelerate(Body& body, int& last_round);
   Again biasAgain(const StepContext& context, const Solution& solution);
