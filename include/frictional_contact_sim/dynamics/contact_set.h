@@ -25,7 +25,7 @@
  *
  * What may go through is 1e-9 of the size of the smaller shape, a hundred times more in each of two rounds after the
  * second (crossing edges converge by a factor of 4 a round, no more); after
- * 10 rounds a trace of 1e-4 of the size is left to the next step, more than that is a failed step. See
+ * 10 rounds a trace of 1e-4 of the size is left to the next step, after 30 more than that is a failed step. See
  * docs/residuals.md, "Nothing goes through".
  */
 #include <Eigen/Core>
