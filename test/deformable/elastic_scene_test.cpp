@@ -332,5 +332,23 @@ TEST(ElasticSizeTest, CellsAndSectionsInAllAreBounded)
   EXPECT_EQ(loadingMessage("bodies:\n" + rod("hair", {0.0, 0.0, 1.0}, ", pieces: 1, sections: 1000")), "no error");
 }
 
+TEST(ElasticSceneTest, YoungModulusOfARodIsOneOrOneAPiece)
+{
+  const auto with = [](const std::string& young)
+  {
+    return loadingMessage(
+        "bodies:\n  - name: hair\n    rod: {length: 0.2, radius: 0.002, pieces: 3, density: 1300, "
+        "young_modulus: " +
+        young + "}\n    pose: {xyz: [0, 0, 1]}\n");
+  };
+  EXPECT_EQ(with("1.0e7"), "no error");
+  EXPECT_EQ(with("[1.0e7, 2.0e7, 3.0e7]"), "no error");
+  for (const char* const wrong : {"[1.0e7, 2.0e7]", "[]", "[1.0e7]"})
+    EXPECT_THAT(with(wrong), testing::AllOf(HasSubstr("young_modulus"), HasSubstr("one for each of 3 pieces")))
+        << wrong;
+  for (const char* const wrong : {"0", "-1", ".nan", "stiff", "[1.0e7, 0, 1.0e7]", "{a: 1}"})
+    EXPECT_THAT(with(wrong), HasSubstr("young_modulus")) << wrong;
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim
