@@ -158,17 +158,12 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
     row.normal = back[0].linear() * found.normal;
   const Eigen::Vector3d on_a = back[0] * found.position;
   const Eigen::Vector3d on_b = back[1] * found.position;
-  const auto bodyOf = [this](int handle)
+  // A deformable body on what only a program moves: in a step of a thin rod the two may part by more than its size.
+  const auto isAlone = [this](int handle, int other)
   {
     const int body = world_.shape(handle).body;
-    return body < 0 ? nullptr : &bodies_[static_cast<size_t>(body)].model;
-  };
-  // A deformable body on what only a program moves: in a step of a thin rod the two may part by more than its size.
-  const auto isAlone = [&](int handle, int other)
-  {
-    const BodyModel* one = bodyOf(handle);
-    const BodyModel* beside = bodyOf(other);
-    return one != nullptr && one->solid && (beside == nullptr || beside->nv == 0);
+    const int beside = world_.shape(other).body;
+    return body >= 0 && bodies_[body].model.solid && (beside < 0 || bodies_[beside].model.nv == 0);
   };
   if (isAlone(found.shape_b, found.shape_a))
     row.position = on_b;

@@ -172,7 +172,8 @@ void StepAssembly::moveBias(const StepContext& context)
     if (misses_[b] == 0.0)
       continue;
     Body& body = bodies_[b];
-    accelerate(body, last_bias_round_[b]);
+    if (bias_rounds_ + 1 >= PLAIN_ROUNDS)  // with the round before the first one that is not plain
+      accelerate(body, last_bias_round_[b]);
     force_.segment(body.v_offset, body.model.nv) += context.dt * (body.next_bias - body.bias);
     body.bias = body.next_bias;
   }

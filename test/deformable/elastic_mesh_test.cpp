@@ -13,6 +13,7 @@
 
 #include "frictional_contact_sim/deformable/elastic_mesh.h"
 #include "frictional_contact_sim/model/model_error.h"
+#include "support/market_file.h"
 
 namespace frictional_contact_sim
 {
@@ -342,26 +343,6 @@ TEST_F(FileTest, BrokenGmshFilesAreNamedWithTheirLine)
   EXPECT_NE(messageOf(write("empty.msh", "")).find("no $MeshFormat"), std::string::npos);
 }
 
-std::string marketOf(const SparseRows& matrix, bool symmetric)
-{
-  std::ostringstream text;
-  text.precision(17);
-  long count = 0;
-  std::ostringstream entries;
-  entries.precision(17);
-  for (int row = 0; row < matrix.rows(); ++row)
-    for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-      if (!symmetric || entry.col() <= row)
-      {
-        entries << row + 1 << ' ' << entry.col() + 1 << ' ' << entry.value() << '\n';
-        ++count;
-      }
-  text << "%%MatrixMarket matrix coordinate real " << (symmetric ? "symmetric" : "general") << "\n% made by a test\n"
-       << matrix.rows() << ' ' << matrix.cols() << ' ' << count << '\n'
-       << entries.str();
-  return text.str();
-}
-
 TEST_F(FileTest, ExportedMatricesComeBack)
 {
   const ElasticMesh mesh = disturbed(3, 4);
@@ -376,15 +357,15 @@ TEST_F(FileTest, ExportedMatricesComeBack)
   const std::string table = write("nodes.csv", nodes.str());
   for (const bool symmetric : {true, false})
   {
-    const ElasticParts read = readMatrices(write("M.mtx", marketOf(parts.mass, symmetric)),
-                                           write("K.mtx", marketOf(parts.stiffness, symmetric)), table);
+    const ElasticParts read = readMatrices(write("M.mtx", test_support::marketFile(parts.mass, symmetric)),
+                                           write("K.mtx", test_support::marketFile(parts.stiffness, symmetric)), table);
     EXPECT_EQ(read.dimension, 3);
     EXPECT_EQ(read.surface, parts.surface);
     EXPECT_EQ(read.groups.at("fixed"), std::vector<int>{3});
     EXPECT_LT((read.mass - parts.mass).norm(), 1e-15 * parts.mass.norm());
     EXPECT_LT((read.stiffness - parts.stiffness).norm(), 1e-15 * parts.stiffness.norm());
   }
-  const std::string good = marketOf(parts.mass, true);
+  const std::string good = test_support::marketFile(parts.mass, true);
   EXPECT_THROW(
       readMatrices(write("bad.mtx", "%%MatrixMarket matrix array real general\n1 1\n1\n"), write("K.mtx", good), table),
       ModelError);

@@ -13,6 +13,7 @@
 #include "frictional_contact_sim/simulation/simulator.h"
 #include "frictional_contact_sim/solver/registry.h"
 #include "mutation.h"
+#include "support/market_file.h"
 #include "support/random_mesh.h"
 #include "support/random_robot.h"
 #include "support/random_scene.h"
@@ -188,21 +189,6 @@ std::string gmshFile(const ElasticMesh& mesh, Dice& dice)
   return file.str();
 }
 
-std::string marketFile(const SparseRows& matrix)
-{
-  std::ostringstream entries;
-  int count = 0;
-  for (int row = 0; row < matrix.rows(); ++row)
-    for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-      if (entry.col() <= row)
-      {
-        entries << row + 1 << " " << entry.col() + 1 << " " << text(entry.value()) << "\n";
-        ++count;
-      }
-  return "%%MatrixMarket matrix coordinate real symmetric\n" + std::to_string(matrix.rows()) + " " +
-         std::to_string(matrix.cols()) + " " + std::to_string(count) + "\n" + entries.str();
-}
-
 std::string nodeTable(const ElasticParts& parts)
 {
   std::string table = "x,y,z,surface,fixed\n";
@@ -340,8 +326,8 @@ FuzzCase makeFuzzCase(FuzzInput input, std::uint32_t seed, const std::string& sc
       material.density = 1000.0;
       const ElasticParts parts = assembleElastic(smallElasticMesh(dice), material);
       files.files = {{"scene.yaml", elasticScenario("mass: M.mtx, stiffness: K.mtx, nodes: nodes.csv")},
-                     {"M.mtx", marketFile(parts.mass)},
-                     {"K.mtx", marketFile(parts.stiffness)},
+                     {"M.mtx", marketFile(parts.mass, true)},
+                     {"K.mtx", marketFile(parts.stiffness, true)},
                      {"nodes.csv", nodeTable(parts)}};
       target = std::array<const char*, 3>{"M.mtx", "K.mtx", "nodes.csv"}[static_cast<size_t>(dice.integer(0, 2))];
       break;
