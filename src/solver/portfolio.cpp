@@ -123,6 +123,7 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , newton_(std::make_unique<AcNewton>())
   , first_newton_(std::make_unique<AcNewton>(firstNewton(true)))
   , newton_trial_(std::make_unique<AcNewton>(firstNewton(false)))
+  , ds_newton_(std::make_unique<DsNewton>())
   , interior_point_(std::make_unique<InteriorPoint>())
   , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
@@ -285,6 +286,22 @@ bool Portfolio::tryNewton(AcNewton& newton, const DelassusProblem& problem, cons
   return done;
 }
 
+/** Newton once more, from a cold start: the guess may be what it failed on. */
+bool Portfolio::tryWithoutGuess(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+{
+  if (context.cold_start || context.max_iterations <= used_)
+    return false;
+  result.residual = solveAtOnce(problem, context, result);
+  return run(*first_newton_, problem, context, options_.newton_first_steps, result);
+}
+
+/** De Saxce's Newton from where the first one began: near the best iterate is where that one went in circles. */
+bool Portfolio::tryDsNewton(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+{
+  result.solution.r = guess_r_;
+  return run(*ds_newton_, problem, context, options_.newton_first_steps, result);
+}
+
 /** Haslinger's fixed point, given up when it is slow: then the others start as if it had not been. */
 bool Portfolio::tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
@@ -345,6 +362,7 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   used_ = 0;
   stressed_r_.resize(0);
   best_r_ = result.solution.r;
+  guess_r_ = best_r_;
   if (!(result.residual >= 0.0))
   {
     result.residual = criterion(problem, context, best_r_);
@@ -358,7 +376,9 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   if (newton_first)
   {
     done = done || tryNewton(*first_newton_, problem, context, options_.newton_first_steps, result);
+    done = done || tryWithoutGuess(problem, context, result);
     done = done || tryInteriorPoint(problem, context, result);
+    done = done || tryDsNewton(problem, context, result);
   }
   else if (problem.W.rows() <= options_.newton_try_rows)
     done = done || tryNewton(*newton_trial_, problem, context, options_.newton_try_steps, result);

@@ -130,7 +130,6 @@ SolveContext Solver::begin(SolverResult& result)
   return context;
 }
 
-/** Cold starts that may solve the problem already; returns E of the last one. */
 double Solver::solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
 {
   Solution& solution = result.solution;

@@ -145,6 +145,9 @@ protected:
    * @return false = there is no such start, r and u are untouched (the default: r = 0 is the only one)
    */
   virtual bool start(int attempt, const DelassusProblem& problem, Eigen::VectorXd& r, Eigen::VectorXd& u);
+  /** @brief Sets result.solution r and u to the first cold start that solves the problem, else the last; returns its E.
+   */
+  double solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   /**
    * @brief Runs another method on the same problem from result.solution.r, without the checks and the final judgement
    * of solve(): for methods made of methods. result.residual as for doSolve().
@@ -154,7 +157,6 @@ protected:
 
 private:
   SolveContext begin(SolverResult& result);
-  double solveAtOnce(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   double solveLocal(const DelassusProblem& problem, const Solution* guess, SolveContext& context, SolverResult& result);
   void solveIslands(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   void solveIsland(const DelassusProblem& whole, const SolveContext& context, IslandSlot& slot);
