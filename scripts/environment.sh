@@ -15,13 +15,12 @@ install_packages()
 
 # What the programs of the package are built from, the lists and state of Debian's packages among it.
 built_from=(include src msg srv CMakeLists.txt package.xml scripts/environment.sh scripts/packages.txt)
-built_stamp=$build_dir/.built
 
 # Whether all programs have been built, here, after the last change of what they are built from.
 is_built()
 {
-  [ -f "$built_stamp" ] && [ "$(<"$built_stamp")" = "$package_dir" ] &&
-    [ -z "$(cd "$package_dir" && find "${built_from[@]}" /var/lib/dpkg/status -newer "$built_stamp" -print -quit)" ]
+  [ -f "$build_dir/.built" ] && [ "$(<"$build_dir/.built")" = "$package_dir" ] &&
+    [ -z "$(cd "$package_dir" && find "${built_from[@]}" /var/lib/dpkg/status -newer "$build_dir/.built" -print -quit)" ]
 }
 
 # Configures (when needed) and builds: build_package [cmake options ...] [-- make targets ...]; prints on stderr only.
@@ -50,7 +49,7 @@ build_package()
   echo "$package_dir" >"$begin"
   cmake --build "$build_dir" --parallel "$(nproc)" ${targets[@]:+--target "${targets[@]}"} >&2 || code=$?
   if [ $code -eq 0 ] && { [ ${#targets[@]} -eq 0 ] || [ "${targets[0]}" = all ]; }; then
-    mv "$begin" "$built_stamp"
+    mv "$begin" "$build_dir/.built"
   fi
   exec {lock}>&-
   return $code

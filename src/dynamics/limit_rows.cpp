@@ -68,7 +68,8 @@ void LimitRows::addJointRows(const StepContext& context, int body_index, int joi
       continue;
     const NormalShift shift = context.impact ? impactShift(gap_now, velocity, {}, context.dt)
                                              : normalShift(context.normal_law, gap_now, velocity, {}, context.dt);
-    side.has_row = shift.active;
+    // An answer that needs it has another velocity than the one that made an impact's row inactive.
+    side.has_row = shift.active || side.needed;
     if (!side.has_row)
       continue;
     if (shift.closing)

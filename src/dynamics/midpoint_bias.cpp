@@ -11,11 +11,24 @@ namespace frictional_contact_sim
 namespace
 {
 constexpr int GUESS_ROUNDS = 5;  ///< for the motion without any row
-constexpr int PLAIN_ROUNDS = 3;  ///< of a step, since rows changed last, that take the bias as it is
-constexpr int MANY_BIAS_ROUNDS = 5;  ///< after these it need not be settled wholly
-constexpr int DAMPED_ROUNDS = 6;  ///< from here on half of a change is taken, as contacts come and go with it
-constexpr int CAREFUL_ROUNDS = 10;  ///< and from here on a quarter
-constexpr int MOST_BIAS_ROUNDS = 30;  ///< where a deformable body misses; trees settle in a few or not at all
+constexpr int MANY_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last; after these it need not be settled wholly
+constexpr int MOST_BIAS_ROUNDS = 30;
+constexpr double RUNS_AWAY = 1e3;  ///< times the least miss so far: it will not settle
+
+/** From which round on a body's bias is not taken as it is. */
+struct Acceleration
+{
+  int anderson;  ///< extrapolated from two rounds
+  int damped;  ///< half of a change, as contacts come and go with it
+  int careful;  ///< a quarter
+};
+constexpr Acceleration SOLID{3, 6, 10};
+constexpr Acceleration TREE{MANY_BIAS_ROUNDS, 14, 18};  ///< nearly all settle before
+
+const Acceleration& acceleration(const Body& body)
+{
+  return body.model.solid ? SOLID : TREE;
+}
 constexpr double UNSETTLED = 1e-2;  ///< times the step's change of speed: what a bias may miss after the most rounds
 constexpr double BIAS_ROUND_OFF = 1e-12;  ///< relative: a smaller tolerance asks for more than bias and factor hold
 constexpr double AT_REST = 1e6;  ///< [1/m]: a bias changes v by far less than this times dt v^2
@@ -156,14 +169,6 @@ double StepAssembly::missBias(const StepContext& context, const Solution& soluti
   return worst;
 }
 
-bool StepAssembly::missesSolid() const
-{
-  for (size_t b = 0; b < bodies_.size(); ++b)
-    if (misses_[b] > 0.0 && bodies_[b].model.solid)
-      return true;
-  return false;
-}
-
 /** The bias of the bodies that miss to that of the mean velocity of the answer. */
 void StepAssembly::moveBias(const StepContext& context)
 {
@@ -172,7 +177,7 @@ void StepAssembly::moveBias(const StepContext& context)
     if (misses_[b] == 0.0)
       continue;
     Body& body = bodies_[b];
-    if (bias_rounds_ + 1 >= PLAIN_ROUNDS)  // with the round before the first one that is not plain
+    if (bias_rounds_ + 1 >= acceleration(body).anderson)  // with the round before the first one that is not plain
       accelerate(body, last_bias_round_[b]);
     force_.segment(body.v_offset, body.model.nv) += context.dt * (body.next_bias - body.bias);
     body.bias = body.next_bias;
@@ -180,17 +185,19 @@ void StepAssembly::moveBias(const StepContext& context)
 }
 
 /**
- * Body::next_bias after some rounds: fixed-point iteration alone diverges where a soft rod cracks like a whip, and
- * swings between two answers. Source: Anderson (1965), of depth one; then damped.
+ * Body::next_bias after some rounds: fixed-point iteration alone diverges where a soft rod cracks like a whip or a
+ * light limb turns by much in a step, and swings between two answers. Source: Anderson (1965), of depth one; then
+ * damped.
  */
 void StepAssembly::accelerate(Body& body, int& last_round)
 {
   auto last_bias = last_bias_.segment(body.v_offset, body.model.nv);  // as computed
   auto last_miss = last_miss_.segment(body.v_offset, body.model.nv);
+  const Acceleration& begin = acceleration(body);
   body.change = body.next_bias - body.bias;
-  if (bias_rounds_ >= DAMPED_ROUNDS)
-    body.next_bias = body.bias + (bias_rounds_ >= CAREFUL_ROUNDS ? 0.25 : 0.5) * body.change;
-  else if (body.model.solid && bias_rounds_ >= PLAIN_ROUNDS && last_round == bias_rounds_ - 1)
+  if (bias_rounds_ >= begin.damped)
+    body.next_bias = body.bias + (bias_rounds_ >= begin.careful ? 0.25 : 0.5) * body.change;
+  else if (bias_rounds_ >= begin.anderson && last_round == bias_rounds_ - 1)
   {
     const double share = body.change.dot(body.change - last_miss) / (body.change - last_miss).squaredNorm();
     if (std::isfinite(share))
@@ -214,7 +221,8 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
   if (worst == 0.0 || (may_end && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
-  if (bias_rounds_ == (missesSolid() ? MOST_BIAS_ROUNDS : MANY_BIAS_ROUNDS) || !std::isfinite(worst))
+  least_bias_miss_ = bias_rounds_ == 0 ? worst : std::min(least_bias_miss_, worst);
+  if (bias_rounds_ == MOST_BIAS_ROUNDS || !std::isfinite(worst) || (may_end && worst > RUNS_AWAY * least_bias_miss_))
     return Again::NEVER;
   moveBias(context);
   ++bias_rounds_;

@@ -8,6 +8,7 @@
 #include "frictional_contact_sim/solver/convex/spectral_gradient.h"
 #include "frictional_contact_sim/solver/ds_newton.h"
 #include "frictional_contact_sim/solver/enumeration/enumerate.h"
+#include "frictional_contact_sim/solver/fb_newton.h"
 #include "frictional_contact_sim/solver/fb_newton_smoothed.h"
 #include "frictional_contact_sim/solver/gauss_seidel.h"
 #include "frictional_contact_sim/solver/haslinger.h"
@@ -22,6 +23,8 @@ namespace
 {
 /// Sweeps after which Gauss-Seidel must have halved the residual to go on.
 constexpr int STALL_WINDOW = 20;
+/// Budget of each of the other Newton methods on few rows: they take longer, where they have an answer at all.
+constexpr int OTHER_NEWTON_STEPS = 70;
 /// Above Newton's first proximal parameter, below its restart.
 constexpr double WATCHDOG_MIN = 1e-5;
 /// With a guess a problem is one of a series, as a rule. Newton on a small one then takes one more step unless it is
@@ -123,7 +126,6 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   , newton_(std::make_unique<AcNewton>())
   , first_newton_(std::make_unique<AcNewton>(firstNewton(true)))
   , newton_trial_(std::make_unique<AcNewton>(firstNewton(false)))
-  , ds_newton_(std::make_unique<DsNewton>())
   , interior_point_(std::make_unique<InteriorPoint>())
   , haslinger_(quickHaslinger())
   , swept_newton_(std::make_unique<SweptNewton>())
@@ -134,6 +136,8 @@ Portfolio::Portfolio(const PortfolioOptions& options)
   sweeps.stall_window = STALL_WINDOW;
   sweeps.conjugate = true;
   gauss_seidel_->setOptions(sweeps);
+  other_newtons_.push_back(std::make_unique<FbNewton>());
+  other_newtons_.push_back(std::make_unique<DsNewton>());
   FbNewtonSmoothedOptions quick;
   quick.least_squares = false;
   last_resort_.push_back(std::make_unique<FbNewtonSmoothed>(quick));
@@ -286,20 +290,23 @@ bool Portfolio::tryNewton(AcNewton& newton, const DelassusProblem& problem, cons
   return done;
 }
 
-/** Newton once more, from a cold start: the guess may be what it failed on. */
-bool Portfolio::tryWithoutGuess(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+/** Newton without the guess, which may be what it failed on. */
+bool Portfolio::tryWithoutGuess(Solver& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
+                                SolverResult& result)
 {
   if (context.cold_start || context.max_iterations <= used_)
     return false;
   result.residual = solveAtOnce(problem, context, result);
-  return run(*first_newton_, problem, context, options_.newton_first_steps, result);
+  return run(newton, problem, context, steps, result);
 }
 
-/** De Saxce's Newton from where the first one began: near the best iterate is where that one went in circles. */
-bool Portfolio::tryDsNewton(const DelassusProblem& problem, const SolveContext& context, SolverResult& result)
+/** Newton on another function, from where the first began: near the best iterate is where that one went in circles. */
+bool Portfolio::tryOtherNewton(Solver& newton, const DelassusProblem& problem, const SolveContext& context,
+                               SolverResult& result)
 {
   result.solution.r = guess_r_;
-  return run(*ds_newton_, problem, context, options_.newton_first_steps, result);
+  return run(newton, problem, context, OTHER_NEWTON_STEPS, result) ||
+         tryWithoutGuess(newton, problem, context, OTHER_NEWTON_STEPS, result);
 }
 
 /** Haslinger's fixed point, given up when it is slow: then the others start as if it had not been. */
@@ -376,9 +383,10 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   if (newton_first)
   {
     done = done || tryNewton(*first_newton_, problem, context, options_.newton_first_steps, result);
-    done = done || tryWithoutGuess(problem, context, result);
+    done = done || tryWithoutGuess(*first_newton_, problem, context, options_.newton_first_steps, result);
     done = done || tryInteriorPoint(problem, context, result);
-    done = done || tryDsNewton(problem, context, result);
+    for (const std::unique_ptr<Solver>& other : other_newtons_)
+      done = done || tryOtherNewton(*other, problem, context, result);
   }
   else if (problem.W.rows() <= options_.newton_try_rows)
     done = done || tryNewton(*newton_trial_, problem, context, options_.newton_try_steps, result);

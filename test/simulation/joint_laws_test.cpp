@@ -206,5 +206,37 @@ TEST(JointLimitTest, StopsAnyInertiaWithoutOvershoot)
     }
 }
 
+TEST(JointLimitTest, AnImpactAtTheStartReachesASecondLimitThatWasAtRest)
+{
+  // A slider at its end stop, moving into it, carries a second one 0.1 mm before its own: the first stops at once, the
+  // second goes on and may be at its limit in the middle of the first step, not beyond.
+  const std::string link =
+      "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+  const double gap = 1e-4;
+  Scenario scenario = emptySpace();
+  BodySpec sliders;
+  sliders.name = "sliders";
+  sliders.base = BaseType::FIXED;
+  sliders.urdf_xml =
+      "<robot name='sliders'><link name='base'/><link name='a'>" + link + "</link><link name='b'>" + link +
+      "</link><joint name='first' type='prismatic'><parent link='base'/><child link='a'/><axis xyz='1 0 0'/>"
+      "<limit lower='-1' upper='1' effort='0' velocity='10'/></joint>"
+      "<joint name='second' type='prismatic'><parent link='a'/><child link='b'/><axis xyz='1 0 0'/>"
+      "<limit lower='-1' upper='1' effort='0' velocity='10'/></joint></robot>";
+  sliders.joints["first"].position = 1.0;
+  sliders.joints["first"].velocity = 1.0;
+  sliders.joints["second"].position = 1.0 - gap;
+  scenario.bodies.push_back(sliders);
+  AuditedSimulator simulator(scenario);
+  ASSERT_TRUE(simulator.outcome().converged()) << simulator.outcome().message;
+  EXPECT_NEAR(simulator.velocity(0)[0], 0.0, 1e-12);
+  EXPECT_NEAR(simulator.velocity(0)[1], 2.0 * gap / scenario.time_step, 1e-9);
+  for (int step = 0; step < 10; ++step)
+  {
+    ASSERT_TRUE(simulator.step().converged()) << simulator.outcome().message;
+    EXPECT_LT(simulator.position(0)[1], 1.0 + 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim

@@ -6,7 +6,8 @@
  *   0  the guess is already good, or, from a cold start, every law solved apart is: no iteration at all
  *   1  few rows: proximal Newton from the guess (quick, and it keeps the symmetry of a symmetric problem), then without
  *      it (a servo that turns round makes it a bad one), then the interior point, which takes 20 to 60 iterations where
- *      Newton goes in circles: feet on many redundant points, then De Saxce's Newton from the guess;
+ *      Newton goes in circles: feet on many redundant points, then the same two ways Newton on
+ *      Fischer and Burmeister's function and on De Saxce's;
  *      some more rows: the same for a few steps, given up at the first that fails;
  *      many rows: Haslinger's fixed point as long as every iteration takes four fifths of the residual, as it does
  *      where nearly everything sticks (a tower at rest), then Gauss-Seidel sweeps with a stall detector, then proximal
@@ -37,7 +38,6 @@ namespace frictional_contact_sim
 class GaussSeidel;
 class AcNewton;
 class Haslinger;
-class DsNewton;
 class InteriorPoint;
 class SweptNewton;
 class Enumerate;
@@ -47,7 +47,7 @@ struct PortfolioOptions
   int newton_first_rows = 150;  ///< up to this many rows Newton goes first, >= 0
   int newton_first_steps = 30;  ///< its budget in that place, >= 1
   int interior_rows = 0;  ///< from so many rows on the interior point is next where that has failed, >= 0
-  int interior_steps = 100;  ///< its budget, >= 1
+  int interior_steps = 200;  ///< its budget, >= 1
   int newton_try_rows = 290;  ///< up to this many rows it goes first too, but for newton_try_steps at most
   int newton_try_steps = 8;  ///< and only as long as no step fails, >= 1
   int haslinger_steps = 10;  ///< outer iterations of Haslinger's fixed point on more rows, as long as it is quick, >= 1
@@ -93,8 +93,10 @@ private:
   bool tryNewton(AcNewton& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
                  SolverResult& result);
   bool tryInteriorPoint(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
-  bool tryWithoutGuess(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
-  bool tryDsNewton(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
+  bool tryWithoutGuess(Solver& newton, const DelassusProblem& problem, const SolveContext& context, int steps,
+                       SolverResult& result);
+  bool tryOtherNewton(Solver& newton, const DelassusProblem& problem, const SolveContext& context,
+                      SolverResult& result);
   bool tryHaslinger(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool tryEnumerate(const DelassusProblem& problem, const SolveContext& context, SolverResult& result);
   bool run(Solver& method, const DelassusProblem& problem, const SolveContext& context, int budget,
@@ -104,11 +106,11 @@ private:
   std::unique_ptr<GaussSeidel> gauss_seidel_;
   std::unique_ptr<AcNewton> newton_, first_newton_;
   std::unique_ptr<AcNewton> newton_trial_;  ///< gives up at the first failure
-  std::unique_ptr<DsNewton> ds_newton_;
   std::unique_ptr<InteriorPoint> interior_point_;
   std::unique_ptr<Haslinger> haslinger_;  ///< gives up when it is slow
   std::unique_ptr<SweptNewton> swept_newton_;
   std::unique_ptr<Enumerate> enumerate_;  ///< ends the portfolio on few rows
+  std::vector<std::unique_ptr<Solver>> other_newtons_;  ///< on few rows, where the first has failed
   std::vector<std::unique_ptr<Solver>> last_resort_;  ///< after Newton
   std::vector<std::unique_ptr<Solver>> without_factors_;  ///< where factorizations are too large
   Eigen::VectorXd velocity_, guess_r_, best_r_, first_r_, apart_r_;
