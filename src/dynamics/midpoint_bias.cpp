@@ -13,7 +13,6 @@ namespace
 constexpr int GUESS_ROUNDS = 5;  ///< for the motion without any row
 constexpr int MANY_BIAS_ROUNDS = 5;  ///< of a step, since rows changed last; after these it need not be settled wholly
 constexpr int MOST_BIAS_ROUNDS = 30;
-constexpr double RUNS_AWAY = 1e3;  ///< times the least miss so far: it will not settle
 
 /** From which round on a body's bias is not taken as it is. */
 struct Acceleration
@@ -221,8 +220,7 @@ Again StepAssembly::biasAgain(const StepContext& context, const Solution& soluti
   if (worst == 0.0 || (may_end && worst * std::max(context.tolerance, BIAS_ROUND_OFF) < UNSETTLED))
     return Again::NO;
   unsatisfied_ = "bias at the midpoint";
-  least_bias_miss_ = bias_rounds_ == 0 ? worst : std::min(least_bias_miss_, worst);
-  if (bias_rounds_ == MOST_BIAS_ROUNDS || !std::isfinite(worst) || (may_end && worst > RUNS_AWAY * least_bias_miss_))
+  if (bias_rounds_ == MOST_BIAS_ROUNDS || !std::isfinite(worst))
     return Again::NEVER;
   moveBias(context);
   ++bias_rounds_;

@@ -13,9 +13,9 @@ namespace
 {
 constexpr double RUNAWAY_SPEED = 1e9;  ///< faster than light [m/s] or [rad/s]: not a motion, a failed step
 constexpr double SHARE_OF_TOLERANCE = 0.5;  ///< of E: what other forces of the same effect may add to it
-/// Other ideas than the default portfolio's first, then methods that it has itself, for whoever chose another method.
-/// The order is a choice by kind of method; it is not measured yet.
-constexpr const char* FALLBACKS[] = {"interior_point", "cadoux_fixed_point", "ac_newton", "gauss_seidel"};
+/// Two that answer what the portfolio's shorter turns left in floods of commands, another idea than all of its own,
+/// then methods that it has itself, for whoever chose another one.
+constexpr const char* FALLBACKS[] = {"interior_point", "fb_newton", "cadoux_fixed_point", "ac_newton", "gauss_seidel"};
 /// Share of the iterations where overlaps are pushed out and need not be: an overlap that cannot be pushed out has no
 /// answer at all.
 constexpr int FIRST_TRY = 10;
@@ -192,12 +192,16 @@ void StepSolver::tryOthers(const IncrementalProblem& problem, SolverResult& resu
   double seconds = result.seconds;
   for (const std::unique_ptr<Solver>& other : others_)
   {
-    if (contains(tried, other->name()) || other->name() == method_->name())
+    if (other->name() == method_->name())
       continue;
-    // An iterate that creates energy (a self-stress, say) is no start: cold then.
-    const bool warm = isMotion(result.solution) && energyOf(problem, result, stopping_.tolerance).holds();
+    // What has had a turn in the portfolio starts anew, and with a budget of its own. An iterate that creates energy (a
+    // self-stress, say) is no start either.
+    const bool warm = !contains(tried, other->name()) && isMotion(result.solution) &&
+                      energyOf(problem, result, stopping_.tolerance).holds();
     run(*other, problem, warm ? &result.solution : nullptr, attempt_);
-    tried.insert(tried.end(), attempt_.tried.begin(), attempt_.tried.end());
+    for (const std::string& name : attempt_.tried)
+      if (!contains(tried, name))
+        tried.push_back(name);
     iterations += attempt_.iterations;
     seconds += attempt_.seconds;
     const bool over = attempt_.status == SolverStatus::CONVERGED || attempt_.status == SolverStatus::STOPPED_BY_USER ||

@@ -124,7 +124,6 @@ private:
   int joint_rows_ = 0;  ///< first row of a joint; contacts come before
   int last_joint_rows_ = 0;  ///< the same of the problem that was solved last
   int bias_rounds_ = 0;  ///< since rows changed last
-  double least_bias_miss_ = 0.0;  ///< of the rounds since rows changed last
   std::vector<double> misses_;  ///< bodies: see missBias
   Eigen::VectorXd last_bias_;  ///< velocities_: at the answer of the round before
   Eigen::VectorXd last_miss_;  ///< the same less what that round was solved with
