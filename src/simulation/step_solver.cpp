@@ -27,6 +27,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+void addNew(const std::vector<std::string>& names, std::vector<std::string>& list)
+{
+  for (const std::string& name : names)
+    if (!contains(list, name))
+      list.push_back(name);
+}
+
 EnergyCheck energyOf(const IncrementalProblem& problem, const SolverResult& result, double tolerance)
 {
   return checkEnergy(problem, result.solution, result.free_energy, tolerance);
@@ -199,9 +206,7 @@ void StepSolver::tryOthers(const IncrementalProblem& problem, SolverResult& resu
     const bool warm = !contains(tried, other->name()) && isMotion(result.solution) &&
                       energyOf(problem, result, stopping_.tolerance).holds();
     run(*other, problem, warm ? &result.solution : nullptr, attempt_);
-    for (const std::string& name : attempt_.tried)
-      if (!contains(tried, name))
-        tried.push_back(name);
+    addNew(attempt_.tried, tried);
     iterations += attempt_.iterations;
     seconds += attempt_.seconds;
     const bool over = attempt_.status == SolverStatus::CONVERGED || attempt_.status == SolverStatus::STOPPED_BY_USER ||
@@ -246,9 +251,7 @@ void StepSolver::solve(const IncrementalProblem& problem, const Solution& guess,
   // A step may take several solves: what it says is of all of them.
   iterations_ += result.iterations;
   seconds_ += result.seconds;
-  for (const std::string& name : result.tried)
-    if (!contains(tried_, name))
-      tried_.push_back(name);
+  addNew(result.tried, tried_);
   result.iterations = iterations_;
   result.seconds = seconds_;
   result.tried = tried_;

@@ -369,7 +369,6 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   used_ = 0;
   stressed_r_.resize(0);
   best_r_ = result.solution.r;
-  guess_r_ = best_r_;
   if (!(result.residual >= 0.0))
   {
     result.residual = criterion(problem, context, best_r_);
@@ -382,6 +381,8 @@ void Portfolio::doSolve(const DelassusProblem& problem, const SolveContext& cont
   const bool swept = !newton_first && problem.W.rows() <= options_.swept_last_rows;
   if (newton_first)
   {
+    if (!done)
+      guess_r_ = best_r_;
     done = done || tryNewton(*first_newton_, problem, context, options_.newton_first_steps, result);
     done = done || tryWithoutGuess(*first_newton_, problem, context, options_.newton_first_steps, result);
     done = done || tryInteriorPoint(problem, context, result);

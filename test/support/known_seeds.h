@@ -30,8 +30,7 @@ inline const std::vector<KnownSeeds>& knownSeeds()
        {97, 130, 158, 161, 178, 184, 187, 202, 234, 250, 263, 271, 277, 279, 100011, 100015}},
       {"failed",
        "E of 1e-8 to 1e-6 on hundreds of rows, speeds that have run away, a bias that does not settle; 39: three steps "
-       "of "
-       "E 1.8e-8; 231: one step of 1000 since saturated servos count in the residual's scale",
+       "of E 1.8e-8; 231: one step of 1000 since saturated servos count in the residual's scale",
        {39, 131, 165, 231, 234, 278, 279, 100012, 100015}},
       {"penetration", "rows given up for a solve, 1.3e-5 m in ten steps", {261}},
       {"gap",
