@@ -23,6 +23,8 @@ StepAssembly::StepAssembly(std::vector<Body>& bodies, std::vector<std::unique_pt
   acting_.resize(bodies_.size());
   misses_.resize(bodies_.size());
   last_bias_round_.resize(bodies_.size());
+  is_settled_.resize(bodies_.size());
+  settled_.resize(velocities_);
   last_bias_.resize(velocities_);
   last_miss_.resize(velocities_);
   // Entry (i, j) of M is structurally nonzero when one coordinate is the other's ancestor (Featherstone 2008, 6.3).
@@ -60,6 +62,8 @@ void StepAssembly::begin(StepContext& context)
 
 int StepAssembly::assembleForces(const StepContext& context)
 {
+  mass_is_set_ = false;
+  std::fill(is_settled_.begin(), is_settled_.end(), 0);
   momentum_.resize(velocities_);
   force_.resize(velocities_);
   int singular = -1;
@@ -150,11 +154,20 @@ void StepAssembly::assembleMass(bool with_implicit)
       body.model.solid->copyMass(body, value);
     else
       for (int i = 0; i < body.model.nv; ++i)
-        for (const int column : mass_columns_[body.v_offset + i])
-        {
-          const int j = column - body.v_offset;
-          *value++ = body.middle.mass_matrix(i, j) + (with_implicit && i == j ? body.implicit[i] : 0.0);
-        }
+      {
+        // Column i of the dense M, which has both triangles.
+        const double* const dense = body.middle.mass_matrix.data() + static_cast<std::ptrdiff_t>(i) * body.model.nv;
+        const std::vector<int>& columns = mass_columns_[body.v_offset + i];
+        if (columns.size() == static_cast<size_t>(body.model.nv))
+          std::copy(dense, dense + body.model.nv, value);
+        else
+          std::transform(columns.begin(), columns.end(), value,
+                         [&](int column) { return dense[column - body.v_offset]; });
+        if (with_implicit)
+          value[std::lower_bound(columns.begin(), columns.end(), body.v_offset + i) - columns.begin()] +=
+              body.implicit[i];
+        value += columns.size();
+      }
   for (const double mass : sink_.auxiliaryMass())
     *value++ = mass;
 }
@@ -246,7 +259,9 @@ void StepAssembly::assembleProblem(const StepContext& context)
   last_joint_rows_ = joint_rows_;
   problem_.f.setZero(sink_.columns());
   problem_.f.head(velocities_) = force_;
-  assembleMass(!context.impact);
+  if (!mass_is_set_ || problem_.M.rows() != sink_.columns() || sink_.columns() != velocities_)
+    assembleMass(!context.impact);
+  mass_is_set_ = true;
   setScales();
 }
 
@@ -256,6 +271,7 @@ void StepAssembly::clear()
     source->clear();
   sink_.clear(velocities_);
   sink_.copyTo(false, problem_);
+  mass_is_set_ = false;
   problem_.f.setZero(velocities_);
   problem_.scales.clear();
   problem_.bilateral_scales.clear();

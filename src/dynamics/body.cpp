@@ -190,11 +190,15 @@ void addPointColumns(const Body& body, const BodyPoint& point, double sign, Poin
   }
   const MultibodyData& data = body.middle;
   const Eigen::Vector3d arm = point.position - data.reference;
-  for (const int j : body.model.chains[point.link])
+  const std::vector<int>& chain = body.model.chains[point.link];
+  size_t next = columns.size();
+  columns.resize(next + chain.size());
+  for (const int j : chain)
   {
     const auto motion = data.motion_subspace.col(j);
     const Eigen::Vector3d angular = motion.tail<3>();
-    columns.emplace_back(j, sign * (motion.head<3>() + angular.cross(arm)));
+    columns[next].first = j;
+    columns[next++].second = sign * (motion.head<3>() + angular.cross(arm));
   }
 }
 

@@ -23,8 +23,9 @@ void ContactSet::moveAhead(const StepContext& context)
     const Body& body = bodies_[b];
     Ahead& ahead = ahead_[b];
     margins_ahead_[b] = context.dt * speeds_[b] > STILL ? TOUCHING : UNSEEN;
-    if (body.model.nv == 0)
+    if (body.model.nv == 0 || ahead.has_moved)
       continue;
+    ahead.has_moved = true;
     if (context.impact)
     {
       moveHalfStep(body, body.state.q, ahead.v, context.dt, ahead.q);
@@ -43,7 +44,11 @@ void ContactSet::setPosesAhead(const StepContext& context, bool at_end)
   {
     Ahead& ahead = ahead_[b];
     ahead.data.base_pose = basePose(bodies_[b], time);
-    frictional_contact_sim::setPoses(bodies_[b].model, at_end ? ahead.q_end : ahead.q, ahead.data);
+    const Eigen::VectorXd& q = at_end ? ahead.q_end : ahead.q;
+    if (bodies_[b].model.solid)
+      bodies_[b].model.solid->setPoses(q, ahead.data);
+    else
+      computeLinkPoses(bodies_[b].model.tree, q, ahead.data);
     world_.setPoses(static_cast<int>(b), ahead.data);
   }
 }
@@ -183,8 +188,8 @@ ContactPoint ContactSet::linearised(const StepContext& context, const ContactPoi
 
 /**
  * Rows that may be ghosts lose theirs. Poses and touching_pairs_ are those of the next midpoint. A suspect's linear gap
- * there is zero, its true one c: with the velocities at the start of the step it would be gap_m + dt u + c, and twice c
- * allows for what the other rows do.
+ * there is zero, its true one c: without the row it would be gap_m + dt u + c, u of the answer that had none of it, or
+ * of the start of the step; twice c allows for what the other rows do.
  */
 bool ContactSet::dropGhosts(const StepContext& context)
 {
@@ -212,7 +217,8 @@ bool ContactSet::dropGhosts(const StepContext& context)
     for (const ContactPoint& point : ahead)
       if (point.id.shapes == candidate.point.id.shapes)
         gap = std::min(gap, point.gap);
-    if (candidate.point.gap + context.dt * normalSpeed(candidate.point, Motion::START) + 2.0 * gap < 0.0)
+    const double speed = std::min(normalSpeed(candidate.point, Motion::START), candidate.speed_without);
+    if (candidate.point.gap + context.dt * speed + 2.0 * gap < 0.0)
       continue;
     candidate.use = Use::DROPPED;
     dropped = true;

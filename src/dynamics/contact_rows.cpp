@@ -189,7 +189,8 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
 
   const Material& material = pairs_(point.shape_a, point.shape_b);
   const double old_normal = point.normal.dot(velocity);
-  const Restitution restitution{material.restitution, material.tangential_restitution};
+  const Restitution restitution =
+      context.inelastic ? Restitution{} : Restitution{material.restitution, material.tangential_restitution};
   const NormalLaw law = context.normalLaw(point);
   NormalShift shift;
   if (point.is_linearised && law.recovery_speed > 0.0)
@@ -200,15 +201,19 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
     shift = impactShift(point.gap, old_normal, restitution, context.dt);
   else
     shift = normalShift(law, point.gap, old_normal, restitution, context.dt);
-  if (!shift.active || !movesAlong(point.normal))
+  // An answer that needs it has another velocity than the one that made an impact's row inactive.
+  const bool is_needed = context.impact && set_ != nullptr && set_->isNeeded(point.id);
+  if (!(shift.active || is_needed) || !movesAlong(point.normal))
     return;
   contact.friction = material.friction;
-  contact.restitution = material.restitution;
+  contact.restitution = restitution.normal;
   contact.shift = shift.shift;
   contact.closing = shift.closing;
   contact.tangential_shift =
       shift.tangential * Eigen::Vector2d(contact.tangent_1.dot(velocity), contact.tangent_2.dot(velocity));
   contact.count = contact.friction > 0.0 ? 3 : 1;
+  if (contact.closing && (restitution.normal > 0.0 || restitution.tangential > 0.0))
+    sink.noteBounce();
   if (contact.closing)
     sink.noteClosing();
   else if (contact.count == 3 && material.creep != nullptr && !context.impact)

@@ -201,7 +201,10 @@ const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
       carried_.push_back(contact.id);
   std::sort(carried_.begin(), carried_.end());
   for (size_t b = 0; b < bodies_.size(); ++b)
+  {
     speeds_[b] = (bodies_[b].model.nv > 0 ? bodies_[b].speed : 0.0) + baseSpeed(bodies_[b]);
+    ahead_[b].is_known = ahead_[b].has_moved = false;
+  }
   candidates_.clear();
   detectAtMiddle(context);
   for (Candidate& candidate : candidates_)
@@ -264,6 +267,13 @@ bool ContactSet::canGoBack() const
   return rounds_ > 0 && !is_last_ && worst_ <= TRACE;
 }
 
+bool ContactSet::isNeeded(const ContactId& id) const
+{
+  const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), id,
+                                      [](const Candidate& a, const ContactId& b) { return a.point.id < b; });
+  return found != candidates_.end() && found->point.id == id && std::isfinite(found->speed_without);
+}
+
 void ContactSet::beLenient()
 {
   is_lenient_ = true;
@@ -282,9 +292,16 @@ bool ContactSet::setAnswer(const StepContext& context, const Eigen::VectorXd& v)
   for (size_t b = 0; b < bodies_.size(); ++b)
   {
     Body& body = bodies_[b];
+    Ahead& ahead = ahead_[b];
     const int nv = body.model.nv;
-    ahead_[b].v = v.segment(body.v_offset, nv);
-    speeds_[b] = (nv > 0 ? pointSpeed(body, ahead_[b].v) : 0.0) + baseSpeed(body);
+    // Most bodies of a large scene answer as they did in the round before.
+    if (!ahead.is_known || ahead.v != v.segment(body.v_offset, nv))
+    {
+      ahead.v = v.segment(body.v_offset, nv);
+      ahead.is_known = true;
+      ahead.has_moved = false;
+      speeds_[b] = (nv > 0 ? pointSpeed(body, ahead.v) : 0.0) + baseSpeed(body);
+    }
     moves = moves || context.dt * speeds_[b] > STILL;
   }
   return moves;
@@ -311,6 +328,7 @@ bool ContactSet::addClosing(const StepContext& context)
       continue;
     worst_ = std::max(worst_, -missing / sizeOf(candidate.point));
     candidate.use = Use::ROW;
+    candidate.speed_without = speed;
     added = true;
   }
   return added;

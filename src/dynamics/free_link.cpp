@@ -23,18 +23,25 @@ Eigen::Matrix3d orientation(const Eigen::VectorXd& q)
   return Eigen::Quaterniond(q.data() + 3).toRotationMatrix();
 }
 
-/** Axes of the angular velocity that the scheme is written in: the body's, or the world's where all axes are principal.
- */
-Eigen::Matrix3d axes(const Body& body, const Eigen::VectorXd& q)
-{
-  return body.model.isotropic ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : orientation(q);
-}
-
 /** R^-1 x, for an R that is orthogonal only to round-off: there and back again must not drift. */
 Eigen::Vector3d turnBack(const Eigen::Matrix3d& turn, const Eigen::Vector3d& x)
 {
   const Eigen::Vector3d back = turn.transpose() * x;
   return back + turn.transpose() * (x - turn * back);
+}
+
+/**
+ * From the world's axes to those that the angular velocity of the scheme is written in, and back: the body's, or the
+ * world's where all axes are principal. `turn` is the body's orientation.
+ */
+Eigen::Vector3d toAxes(const Body& body, const Eigen::Matrix3d& turn, const Eigen::Vector3d& x)
+{
+  return body.model.isotropic ? x : turnBack(turn, x);
+}
+
+Eigen::Vector3d fromAxes(const Body& body, const Eigen::Matrix3d& turn, const Eigen::Vector3d& x)
+{
+  return body.model.isotropic ? x : Eigen::Vector3d(turn * x);
 }
 
 Eigen::Matrix3d cross(const Eigen::Vector3d& x)
@@ -47,11 +54,11 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& x)
 /**
  * q_out = (p, R) moved: the centre by `shift`, the link turned by cay(`turn`), both in the axes of q (there
  * R cay(x) = cay(R x) R). The origin moves by shift - (cay(turn) - I) R c, which is exactly zero at rest.
+ * @param arm R c
  */
-void moveAboutCenter(const Body& body, const Eigen::Vector3d& shift, const Eigen::Vector3d& turn,
+void moveAboutCenter(const Eigen::Vector3d& arm, const Eigen::Vector3d& shift, const Eigen::Vector3d& turn,
                      const Eigen::VectorXd& q, Eigen::VectorXd& q_out)
 {
-  const Eigen::Vector3d arm = orientation(q) * inertiaOf(body).center;
   const Eigen::Vector3d lever = turn.cross(arm);
   const Eigen::Vector3d arm_shift = (lever + 0.5 * turn.cross(lever)) / (1.0 + 0.25 * turn.squaredNorm());
   Eigen::Quaterniond step;
@@ -112,7 +119,7 @@ void moveFreeLinkToMidpoint(const Body& body, const Eigen::VectorXd& q, const Ei
   const Eigen::Vector3d angular = v.tail<3>();
   const Eigen::Vector3d arm = orientation(q) * inertiaOf(body).center;
   const Eigen::Vector3d center_velocity = v.head<3>() + angular.cross(arm);
-  moveAboutCenter(body, 0.5 * dt * center_velocity, 0.5 * dt * angular, q, q_middle);
+  moveAboutCenter(arm, 0.5 * dt * center_velocity, 0.5 * dt * angular, q, q_middle);
 }
 
 void mapFreeLinkStart(Body& body)
@@ -120,26 +127,28 @@ void mapFreeLinkStart(Body& body)
   const BodyState& state = body.state;
   const Eigen::Vector3d angular = state.v.tail<3>();
   const Eigen::Vector3d& center = inertiaOf(body).center;
-  const Eigen::Vector3d center_velocity = state.v.head<3>() + angular.cross(orientation(state.q) * center);
-  const Eigen::Vector3d image = axes(body, body.q_middle) * turnBack(axes(body, state.q), angular);
-  body.v_start.head<3>() = center_velocity - image.cross(orientation(body.q_middle) * center);
+  const Eigen::Matrix3d turn = orientation(state.q);
+  const Eigen::Matrix3d turn_m = orientation(body.q_middle);
+  const Eigen::Vector3d center_velocity = state.v.head<3>() + angular.cross(turn * center);
+  const Eigen::Vector3d image = fromAxes(body, turn_m, toAxes(body, turn, angular));
+  body.v_start.head<3>() = center_velocity - image.cross(turn_m * center);
   body.v_start.tail<3>() = image;
 }
 
 void moveFreely(Body& body, const Eigen::Vector3d& gravity, double dt)
 {
   const RigidInertia& inertia = inertiaOf(body);
-  const Eigen::Matrix3d turn_m = axes(body, body.q_middle);
-  const Eigen::Vector3d arm = orientation(body.q_middle) * inertia.center;
+  const Eigen::Matrix3d turn_m = orientation(body.q_middle);
+  const Eigen::Vector3d arm = turn_m * inertia.center;
   const Eigen::Vector3d image = body.v_start.tail<3>();
   const Eigen::Vector3d force = body.external.head<3>();
   const Eigen::Vector3d torque = body.external.tail<3>() - arm.cross(force);
-  const Eigen::Vector3d spin = turnBack(turn_m, image);
-  const Eigen::Vector3d mean = meanSpin(inertia.rotational, spin, turnBack(turn_m, torque), dt);
+  const Eigen::Vector3d spin = toAxes(body, turn_m, image);
+  const Eigen::Vector3d mean = meanSpin(inertia.rotational, spin, toAxes(body, turn_m, torque), dt);
   const Eigen::Vector3d center_velocity =
       body.v_start.head<3>() + image.cross(arm) +
       dt * (body.middle.base_pose.linear().transpose() * gravity + force / inertia.mass);
-  const Eigen::Vector3d free_image = turn_m * (2.0 * mean - spin);
+  const Eigen::Vector3d free_image = fromAxes(body, turn_m, 2.0 * mean - spin);
   body.v_free.head<3>() = center_velocity - free_image.cross(arm);
   body.v_free.tail<3>() = free_image;
 }
@@ -148,11 +157,13 @@ void computeFreeLinkBias(const Body& body, const Eigen::VectorXd& v, const Eigen
                          Eigen::VectorXd& bias)
 {
   const RigidInertia& inertia = inertiaOf(body);
-  const Eigen::Matrix3d turn_m = axes(body, body.q_middle);
+  const Eigen::Matrix3d turn_m = orientation(body.q_middle);
   const Eigen::Vector3d image = v.tail<3>();
-  const Eigen::Vector3d momentum = turn_m * (inertia.rotational * (turn_m.transpose() * image));
+  const Eigen::Vector3d momentum = body.model.isotropic
+                                       ? Eigen::Vector3d(inertia.rotational * image)
+                                       : Eigen::Vector3d(turn_m * (inertia.rotational * (turn_m.transpose() * image)));
   const Eigen::Vector3d weight = inertia.mass * (body.middle.base_pose.linear().transpose() * gravity);
-  const Eigen::Vector3d arm = orientation(body.q_middle) * inertia.center;
+  const Eigen::Vector3d arm = turn_m * inertia.center;
   bias.head<3>() = -weight;
   bias.tail<3>() = -momentum.cross(image) - arm.cross(weight);
 }
@@ -161,18 +172,20 @@ void moveFreeLinkToEnd(const Body& body, const Eigen::Ref<const Eigen::VectorXd>
                        Eigen::VectorXd& v_end)
 {
   const Eigen::Vector3d& center = inertiaOf(body).center;
-  const Eigen::Matrix3d turn_m = axes(body, body.q_middle);
-  const Eigen::Vector3d arm_m = orientation(body.q_middle) * center;
+  const Eigen::Matrix3d turn = orientation(body.state.q);
+  const Eigen::Matrix3d turn_m = orientation(body.q_middle);
+  const Eigen::Vector3d arm_m = turn_m * center;
   const Eigen::Vector3d image = v.tail<3>();
   const Eigen::Vector3d mean_linear = 0.5 * (body.v_start.head<3>() + v.head<3>());
   const Eigen::Vector3d mean_image = 0.5 * (body.v_start.tail<3>() + image);
   const Eigen::Vector3d center_velocity = v.head<3>() + image.cross(arm_m);
   const Eigen::Vector3d mean_velocity = mean_linear + mean_image.cross(arm_m);
-  const Eigen::Vector3d mean = axes(body, body.state.q) * turnBack(turn_m, mean_image);
-  const Eigen::Vector3d spin = turnBack(turn_m, image);
-  moveAboutCenter(body, dt * mean_velocity, dt * mean, body.state.q, q_end);
-  const Eigen::Vector3d angular = axes(body, q_end) * spin;
-  v_end.head<3>() = center_velocity - angular.cross(orientation(q_end) * center);
+  const Eigen::Vector3d mean = fromAxes(body, turn, toAxes(body, turn_m, mean_image));
+  const Eigen::Vector3d spin = toAxes(body, turn_m, image);
+  moveAboutCenter(turn * center, dt * mean_velocity, dt * mean, body.state.q, q_end);
+  const Eigen::Matrix3d turn_end = orientation(q_end);
+  const Eigen::Vector3d angular = fromAxes(body, turn_end, spin);
+  v_end.head<3>() = center_velocity - angular.cross(turn_end * center);
   v_end.tail<3>() = angular;
 }
 

@@ -7,7 +7,7 @@ namespace frictional_contact_sim
 void RowSink::clear(int velocities)
 {
   velocities_ = velocities;
-  closing_ = false;
+  closing_ = bouncing_ = false;
   h_.clear();
   g_.clear();
   w_.clear();

@@ -35,26 +35,30 @@ void setLinear(Matrix6Xd& subspace, int column, const Eigen::Vector3d& direction
   subspace.col(column).tail<3>().setZero();
 }
 
-/** Pose of the child link from the joint frame in the world, and the joint's columns of the motion subspace. */
+/** Pose of the child link from the joint frame in the world; WITH_MOTION: its columns of the motion subspace as well.
+ */
+template <bool WITH_MOTION>
 void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Vector3d& origin, const double* q,
                MultibodyData& data, Eigen::Isometry3d& pose)
 {
-  Matrix6Xd& subspace = data.motion_subspace;
-  const int v = joint.v_index;
+  [[maybe_unused]] Matrix6Xd& subspace = data.motion_subspace;
+  [[maybe_unused]] const int v = joint.v_index;
   switch (joint.type)
   {
     case JointType::REVOLUTE:
     case JointType::CONTINUOUS:
       pose.linear().noalias() = frame * rotation(joint.axis, q[0]);
       pose.translation() = origin;
-      setAngular(subspace, v, origin - data.reference, frame * joint.axis);
+      if constexpr (WITH_MOTION)
+        setAngular(subspace, v, origin - data.reference, frame * joint.axis);
       break;
     case JointType::PRISMATIC:
     {
       const Eigen::Vector3d axis = frame * joint.axis;
       pose.linear() = frame;
       pose.translation() = origin + q[0] * axis;
-      setLinear(subspace, v, axis);
+      if constexpr (WITH_MOTION)
+        setLinear(subspace, v, axis);
       break;
     }
     case JointType::PLANAR:
@@ -62,9 +66,12 @@ void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Ve
       const Eigen::Matrix<double, 3, 2> axes = frame * planarAxes(joint.axis);
       pose.linear().noalias() = frame * rotation(joint.axis, q[2]);
       pose.translation() = origin + q[0] * axes.col(0) + q[1] * axes.col(1);
-      setLinear(subspace, v, axes.col(0));
-      setLinear(subspace, v + 1, axes.col(1));
-      setAngular(subspace, v + 2, pose.translation() - data.reference, frame * joint.axis);
+      if constexpr (WITH_MOTION)
+      {
+        setLinear(subspace, v, axes.col(0));
+        setLinear(subspace, v + 1, axes.col(1));
+        setAngular(subspace, v + 2, pose.translation() - data.reference, frame * joint.axis);
+      }
       break;
     }
     case JointType::FLOATING:
@@ -73,11 +80,14 @@ void moveJoint(const Joint& joint, const Eigen::Matrix3d& frame, const Eigen::Ve
       const Eigen::Map<const Eigen::Quaterniond> orientation(q + 3);
       pose.linear().noalias() = frame * orientation.toRotationMatrix();
       pose.translation() = origin + frame * position;
-      const Eigen::Vector3d arm = pose.translation() - data.reference;
-      for (int k = 0; k < 3; ++k)
+      if constexpr (WITH_MOTION)
       {
-        setLinear(subspace, v + k, frame.col(k));
-        setAngular(subspace, v + 3 + k, arm, frame.col(k));
+        const Eigen::Vector3d arm = pose.translation() - data.reference;
+        for (int k = 0; k < 3; ++k)
+        {
+          setLinear(subspace, v + k, frame.col(k));
+          setAngular(subspace, v + 3 + k, arm, frame.col(k));
+        }
       }
       break;
     }
@@ -101,6 +111,33 @@ Eigen::Quaterniond exponential(const Eigen::Vector3d& rotation_vector)
   quaternion.w() = small ? 1.0 - 0.5 * square : std::cos(angle);
   quaternion.vec() = factor * half;
   return quaternion;
+}
+template <bool WITH_MOTION>
+void moveLinks(const MultibodyModel& model, const VectorIn& q, MultibodyData& data)
+{
+  if (model.links.empty())
+    return;
+  const Joint& root = model.joints[0];
+  // The root's own joint decides where the reference is before any lever arm is taken about it.
+  data.reference = data.base_pose.translation();
+  if (root.type == JointType::FLOATING)
+    data.reference += data.base_pose.linear() * q.segment<3>(root.q_index);
+  for (size_t i = 0; i < model.links.size(); ++i)
+  {
+    const Joint& joint = model.joints[i];
+    const Eigen::Isometry3d& placement = i == 0 ? data.base_pose : joint.placement;
+    Eigen::Matrix3d frame = placement.linear();
+    Eigen::Vector3d origin = placement.translation();
+    if (joint.parent >= 0)
+    {
+      const Eigen::Isometry3d& parent = data.link_pose[joint.parent];
+      frame = parent.linear() * frame;
+      origin = parent.linear() * origin + parent.translation();
+    }
+    moveJoint<WITH_MOTION>(joint, frame, origin, q.data() + joint.q_index, data, data.link_pose[i]);
+    if constexpr (WITH_MOTION)
+      moveInertia(model.links[i].inertia, data.link_pose[i], data.reference, data.link_inertia[i]);
+  }
 }
 }  // namespace
 
@@ -128,28 +165,12 @@ Eigen::VectorXd zeroPosition(const MultibodyModel& model)
 
 void forwardKinematics(const MultibodyModel& model, const VectorIn& q, MultibodyData& data)
 {
-  if (model.links.empty())
-    return;
-  const Joint& root = model.joints[0];
-  // The root's own joint decides where the reference is before any lever arm is taken about it.
-  data.reference = data.base_pose.translation();
-  if (root.type == JointType::FLOATING)
-    data.reference += data.base_pose.linear() * q.segment<3>(root.q_index);
-  for (size_t i = 0; i < model.links.size(); ++i)
-  {
-    const Joint& joint = model.joints[i];
-    const Eigen::Isometry3d& placement = i == 0 ? data.base_pose : joint.placement;
-    Eigen::Matrix3d frame = placement.linear();
-    Eigen::Vector3d origin = placement.translation();
-    if (joint.parent >= 0)
-    {
-      const Eigen::Isometry3d& parent = data.link_pose[joint.parent];
-      frame = parent.linear() * frame;
-      origin = parent.linear() * origin + parent.translation();
-    }
-    moveJoint(joint, frame, origin, q.data() + joint.q_index, data, data.link_pose[i]);
-    moveInertia(model.links[i].inertia, data.link_pose[i], data.reference, data.link_inertia[i]);
-  }
+  moveLinks<true>(model, q, data);
+}
+
+void computeLinkPoses(const MultibodyModel& model, const VectorIn& q, MultibodyData& data)
+{
+  moveLinks<false>(model, q, data);
 }
 
 void forwardVelocities(const MultibodyModel& model, const VectorIn& v, MultibodyData& data)

@@ -31,6 +31,26 @@ private:
 };
 }  // namespace
 
+namespace
+{
+/** Block of the six coordinates of a root that floats in axes of the world: the products with unit vectors are exact.
+ */
+void setFloatingRoot(const MultibodyModel& model, MultibodyData& data)
+{
+  const WorldInertia& inertia = data.composite_inertia.front();
+  Eigen::MatrixXd& M = data.mass_matrix;
+  const Eigen::Vector3d& moment = inertia.moment;
+  M.topLeftCorner<3, 3>() = inertia.mass * Eigen::Matrix3d::Identity();
+  M.block<3, 3>(0, 3) << 0.0, moment.z(), -moment.y(), -moment.z(), 0.0, moment.x(), moment.y(), -moment.x(), 0.0;
+  M.block<3, 3>(3, 0) = M.block<3, 3>(0, 3).transpose();
+  // One triangle, as everywhere: the two of the inertia differ in their last digit.
+  M.block<3, 3>(3, 3).triangularView<Eigen::Upper>() = inertia.rotational;
+  M.block<3, 3>(3, 3).triangularView<Eigen::StrictlyLower>() = M.block<3, 3>(3, 3).transpose();
+  for (int j = 0; j < 6; ++j)
+    M(j, j) += model.armature[j];
+}
+}  // namespace
+
 void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
 {
   const AncestorRuns chain(model);
@@ -40,6 +60,11 @@ void computeMassMatrix(const MultibodyModel& model, MultibodyData& data)
   for (int i = links - 1; i >= 0; --i)
   {
     const Joint& joint = model.joints[i];
+    if (joint.type == JointType::FLOATING && i == 0 && data.base_pose.linear() == Eigen::Matrix3d::Identity())
+    {
+      setFloatingRoot(model, data);
+      break;
+    }
     const WorldInertia& inertia = data.composite_inertia[i];
     for (int j = joint.v_index + velocitySize(joint.type) - 1; j >= joint.v_index; --j)
     {

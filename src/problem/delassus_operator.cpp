@@ -81,7 +81,8 @@ void DelassusOperator::resizeDense(const std::vector<Law>& laws)
   dense_.resize(rows(), rows());
 }
 
-void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vector<std::vector<int>>& block_columns)
+void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vector<int>& begin,
+                                    const std::vector<int>& block_columns)
 {
   is_dense_ = is_matrix_free_ = false;
   dense_.resize(0, 0);
@@ -94,8 +95,9 @@ void DelassusOperator::resizeSparse(const std::vector<Law>& laws, const std::vec
   for (size_t i = 0; i < count; ++i)
   {
     const int d = laws[i].dimension();
-    for (const int j : block_columns[i])
+    for (int p = begin[i]; p < begin[i + 1]; ++p)
     {
+      const int j = block_columns[static_cast<size_t>(p)];
       if (j == static_cast<int>(i))
         diagonal_[i] = value_begin_[i] + d * (static_cast<int>(columns_.size()) - row_begin_[i]);
       for (int column = offset(j); column < offset(j + 1); ++column)
@@ -140,18 +142,19 @@ void DelassusOperator::assign(const SparseRows& matrix, const std::vector<Law>& 
     return;
   }
   setBlocks(laws);
-  std::vector<std::vector<int>> block_columns(laws.size());
+  std::vector<int> begin = {0};
+  std::vector<int> block_columns;
   for (int i = 0; i < blocks(); ++i)
   {
-    std::vector<int>& touched = block_columns[static_cast<size_t>(i)];
-    touched.push_back(i);
+    block_columns.push_back(i);
     for (int row = offset(i); row < offset(i + 1); ++row)
       for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)
-        touched.push_back(blockOf(static_cast<int>(entry.col())));
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        block_columns.push_back(blockOf(static_cast<int>(entry.col())));
+    std::sort(block_columns.begin() + begin.back(), block_columns.end());
+    block_columns.erase(std::unique(block_columns.begin() + begin.back(), block_columns.end()), block_columns.end());
+    begin.push_back(static_cast<int>(block_columns.size()));
   }
-  resizeSparse(laws, block_columns);
+  resizeSparse(laws, begin, block_columns);
   for (int i = 0; i < blocks(); ++i)
     for (int row = offset(i); row < offset(i + 1); ++row)
       for (SparseRows::InnerIterator entry(matrix, row); entry; ++entry)

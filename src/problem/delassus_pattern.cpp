@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "frictional_contact_sim/math/union_find.h"
 #include "frictional_contact_sim/problem/delassus_reduction.h"
@@ -175,7 +176,6 @@ void DelassusReduction::preparePairs()
   if (kind_ == OperatorKind::MATRIX_FREE)
     return;
   // Whatever a law touches it touches up to the root of the tree, so two laws meet when they share a root.
-  std::vector<std::vector<int>> touching(flags_.size());
   const auto forEachRoot = [&](int i, auto visit)
   {
     const auto law = static_cast<size_t>(i);
@@ -183,32 +183,40 @@ void DelassusReduction::preparePairs()
     {
       const auto velocity = static_cast<size_t>(pattern_[static_cast<size_t>(p)]);
       if (factor_.parent()[velocity] < 0)
-        visit(touching[velocity]);
+        visit(velocity);
     }
   };
+  // Laws of each root, counted first; root_begin_[root] is where its list ends while it is filled.
+  root_begin_.assign(flags_.size() + 1, 0);
   for (int i = 0; i < count; ++i)
-    forEachRoot(i, [&](std::vector<int>& laws) { laws.push_back(i); });
-  std::vector<std::vector<int>> columns(static_cast<size_t>(count));
-  std::vector<int> mark(static_cast<size_t>(count), -1);
+    forEachRoot(i, [&](size_t root) { ++root_begin_[root]; });
+  std::partial_sum(root_begin_.begin(), root_begin_.end(), root_begin_.begin());
+  root_laws_.resize(static_cast<size_t>(root_begin_.back()));
+  for (int i = count - 1; i >= 0; --i)
+    forEachRoot(i, [&](size_t root) { root_laws_[static_cast<size_t>(--root_begin_[root])] = i; });
+  meeting_begin_.assign(1, 0);
+  meeting_.clear();
+  mark_.assign(static_cast<size_t>(count), -1);
   double entries = 0.0;
   for (int i = 0; i < count; ++i)
   {
-    std::vector<int>& row = columns[static_cast<size_t>(i)];
-    row.push_back(i);
-    mark[static_cast<size_t>(i)] = i;
+    meeting_.push_back(i);
+    mark_[static_cast<size_t>(i)] = i;
     forEachRoot(i,
-                [&](const std::vector<int>& laws)
+                [&](size_t root)
                 {
-                  for (const int j : laws)
-                    if (mark[static_cast<size_t>(j)] != i)
+                  for (int p = root_begin_[root]; p < root_begin_[root + 1]; ++p)
+                    if (const int j = root_laws_[static_cast<size_t>(p)]; mark_[static_cast<size_t>(j)] != i)
                     {
-                      mark[static_cast<size_t>(j)] = i;
-                      row.push_back(j);
+                      mark_[static_cast<size_t>(j)] = i;
+                      meeting_.push_back(j);
                     }
                 });
-    std::sort(row.begin(), row.end());
-    for (const int j : row)
-      entries += local_.laws[static_cast<size_t>(i)].dimension() * local_.laws[static_cast<size_t>(j)].dimension();
+    std::sort(meeting_.begin() + meeting_begin_.back(), meeting_.end());
+    for (auto p = static_cast<size_t>(meeting_begin_.back()); p < meeting_.size(); ++p)
+      entries +=
+          local_.laws[static_cast<size_t>(i)].dimension() * local_.laws[static_cast<size_t>(meeting_[p])].dimension();
+    meeting_begin_.push_back(static_cast<int>(meeting_.size()));
   }
   DelassusOperator& W = local_.W;
   const bool full = DelassusOperator::prefersDense(rows, entries / (static_cast<double>(rows) * rows));
@@ -219,17 +227,19 @@ void DelassusReduction::preparePairs()
     W.dense().setZero();
   }
   else
-    W.resizeSparse(local_.laws, columns);
+    W.resizeSparse(local_.laws, meeting_begin_, meeting_);
   for (int i = 0; i < count; ++i)
-    for (const int j : columns[static_cast<size_t>(i)])
-      if (j <= i)
-      {
-        const bool same = sameVelocities(i, j);
-        if (dense)
-          pairs_.push_back({i, j, same, &W.dense()(W.offset(i), W.offset(j)), &W.dense()(W.offset(j), W.offset(i))});
-        else
-          pairs_.push_back({i, j, same, W.block(i, j), W.block(j, i)});
-      }
+    for (int p = meeting_begin_[static_cast<size_t>(i)]; p < meeting_begin_[static_cast<size_t>(i) + 1]; ++p)
+    {
+      const int j = meeting_[static_cast<size_t>(p)];
+      if (j > i)
+        break;
+      const bool same = sameVelocities(i, j);
+      if (dense)
+        pairs_.push_back({i, j, same, &W.dense()(W.offset(i), W.offset(j)), &W.dense()(W.offset(j), W.offset(i))});
+      else
+        pairs_.push_back({i, j, same, W.block(i, j), W.block(j, i)});
+    }
 }
 
 }  // namespace frictional_contact_sim

@@ -9,6 +9,7 @@ extern "C"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -70,10 +71,17 @@ void MassFactor::analyse(const SparseRows& M)
 void MassFactor::findChanges(const SparseRows& M)
 {
   const double* const values = M.valuePtr();
+  const auto differs = [&](int begin, int end)
+  {
+    return std::memcmp(values + begin, factored_.data() + begin, sizeof(double) * static_cast<size_t>(end - begin)) !=
+           0;
+  };
   if (!factored_.empty())
     std::fill(changed_.begin(), changed_.end(), 0);
+  if (!factored_.empty() && !differs(0, static_cast<int>(M.nonZeros())))
+    return;
   for (size_t row = 0; row < root_.size() && !factored_.empty(); ++row)
-    if (!std::equal(values + outer_[row], values + outer_[row + 1], factored_.begin() + outer_[row]))
+    if (differs(outer_[row], outer_[row + 1]))
       changed_[static_cast<size_t>(root_[static_cast<size_t>(inverse_permutation_[row])])] = 1;
   factored_.assign(values, values + M.nonZeros());
 }

@@ -186,11 +186,9 @@ GlobalResidual globalResidual(const IncrementalProblem& problem, GlobalResidualD
   data.term.resize(problem.velocities());
   data.momentum.noalias() = problem.M * solution.v;
   // The floor of velocities, times the largest mass: below it a decaying motion is only subnormal round-off.
-  double heaviest = 0.0;
-  for (int i = 0; i < problem.M.outerSize(); ++i)
-    for (SparseRows::InnerIterator entry(problem.M, i); entry; ++entry)
-      if (entry.col() == i)
-        heaviest = std::max(heaviest, entry.value());
+  // Of a positive definite M the largest entry is one of the diagonal.
+  const Eigen::Map<const Eigen::VectorXd> entries(problem.M.valuePtr(), problem.M.nonZeros());
+  const double heaviest = entries.size() > 0 ? std::max(0.0, entries.maxCoeff()) : 0.0;
   double scale = std::max({maxAbs(data.momentum), maxAbs(problem.f), VELOCITY_FLOOR * heaviest});
   data.momentum += problem.f;
   data.term.noalias() = problem.H.transpose() * solution.r;

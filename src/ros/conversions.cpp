@@ -237,6 +237,7 @@ void fillStepReport(const StepSummary& summary, double real_time_factor, const r
   message.dt = summary.dt;
   message.real_time_factor = real_time_factor;
   message.contacts = static_cast<std::uint32_t>(summary.contacts);
+  message.contact_rounds = static_cast<std::uint32_t>(summary.contact_rounds);
   message.velocities = static_cast<std::uint32_t>(summary.velocities);
   message.bilaterals = static_cast<std::uint32_t>(summary.bilaterals);
   message.islands = static_cast<std::uint32_t>(summary.islands);

@@ -49,7 +49,7 @@ CsvRecorder::CsvRecorder(const std::string& folder) : folder_(folder)
   steps_ = open("steps.csv",
                 "step,time,dt,contacts,velocities,bilaterals,islands,solver,solvers_tried,status,iterations,residual,"
                 "solve_time,bilateral_violation,max_penetration,kinetic,potential,actuators,friction,impact,joints,"
-                "balance_error");
+                "balance_error,contact_rounds");
 }
 
 void CsvRecorder::recordBodies(const Simulator& simulator) const
@@ -161,7 +161,7 @@ void CsvRecorder::recordReport(const StepSummary& report)
          << toString(report.status) << ',' << report.iterations << ',' << report.residual << ',' << report.solve_time
          << ',' << report.bilateral_violation << ',' << report.max_penetration << ',' << energy.kinetic << ','
          << energy.potential << ',' << energy.actuators << ',' << energy.friction << ',' << energy.impact << ','
-         << energy.joints << ',' << energy.balance_error << '\n';
+         << energy.joints << ',' << energy.balance_error << ',' << report.contact_rounds << '\n';
 }
 
 void CsvRecorder::close()

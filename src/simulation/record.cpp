@@ -50,6 +50,7 @@ void Simulator::Impl::storeReport()
   report.time = state.time();
   report.dt = context.dt;
   report.contacts = static_cast<int>(state.rows.contacts.size());
+  report.contact_rounds = contact_set.rounds();
   report.velocities = assembly.velocities();
   report.bilaterals = problem.bilaterals();
   report.islands = countIslands();

@@ -222,13 +222,18 @@ void Simulator::Impl::solveImpact()
   Again again = Again::FROM_GUESS;
   do
   {
-    if (again == Again::FROM_ANSWER)
+    if (again == Again::FROM_ANSWER || context.inelastic)
       assembly.assembleRows(context);
     assembly.makeGuess(context, guess, again == Again::FROM_ANSWER ? &result.solution : nullptr);
     assembly.assembleProblem(context);
     solver.solve(assembly.problem(), guess, true, false, result);
     again = result.status == SolverStatus::CONVERGED ? assembly.again(context, result.solution, true) : Again::NO;
-  } while (again == Again::FROM_ANSWER);
+    if (again == Again::NO && mayDropRestitution())
+    {
+      context.inelastic = true;
+      again = Again::FROM_GUESS;
+    }
+  } while (again == Again::FROM_ANSWER || again == Again::FROM_GUESS);
   is_solved = true;
   if (again == Again::NEVER)
     setUnsatisfied();

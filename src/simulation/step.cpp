@@ -127,6 +127,11 @@ void Simulator::Impl::solveStep()
       askLess();
       again = Again::FROM_GUESS;
     }
+    if (again == Again::NO && mayDropRestitution())
+    {
+      context.inelastic = true;
+      again = Again::FROM_GUESS;
+    }
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
   if (isMotion(result.solution))
     assembly.settleFreeLinks(result.solution);
@@ -183,6 +188,7 @@ void Simulator::Impl::beginRows()
   context.normal_law.recovery_speed = NormalLaw().recovery_speed;
   context.wedged = state.wedged;
   context.wedged_ahead.clear();
+  context.inelastic = false;
   failed_pushes = 0;
 }
 
@@ -204,6 +210,13 @@ bool Simulator::Impl::pushesOut() const
 bool Simulator::Impl::mayRecoverLess() const
 {
   return context.normal_law.recovery_speed > 0.0 && !context.wedged.empty();
+}
+
+/** After a solve without an answer: a link that friction jams cannot part again at the speed it came with. */
+bool Simulator::Impl::mayDropRestitution() const
+{
+  return result.status != SolverStatus::CONVERGED && mayGoOn(result.status) && !context.inelastic &&
+         assembly.bouncing();
 }
 
 /** Points that are pushed out and whose law the last solve has not met. */

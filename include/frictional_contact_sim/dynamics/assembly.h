@@ -88,6 +88,8 @@ public:
   int velocities() const { return velocities_; }
   /** @brief True when a contact or limit closes: an impact has something to solve. */
   bool closing() const { return sink_.closing(); }
+  /** @brief Whether a row asks for restitution. */
+  bool bouncing() const { return sink_.bouncing(); }
   /** @brief Largest position error of bilateral rows at the midpoint [m] or [rad]. */
   double bilateralViolation() const;
 
@@ -123,8 +125,11 @@ private:
   std::vector<char> acting_;  ///< bodies: an impulse of the last step (or an answer) acts on it
   int joint_rows_ = 0;  ///< first row of a joint; contacts come before
   int last_joint_rows_ = 0;  ///< the same of the problem that was solved last
+  bool mass_is_set_ = false;  ///< problem_.M is that of the last assembleForces()
   int bias_rounds_ = 0;  ///< since rows changed last
   std::vector<double> misses_;  ///< bodies: see missBias
+  Eigen::VectorXd settled_;  ///< velocities_: the answer that missBias was asked for last
+  std::vector<char> is_settled_;  ///< bodies: it missed nothing there; 1 without, 2 with an impulse
   Eigen::VectorXd last_bias_;  ///< velocities_: at the answer of the round before
   Eigen::VectorXd last_miss_;  ///< the same less what that round was solved with
   std::vector<int> last_bias_round_;  ///< bodies: the round of these

@@ -30,6 +30,7 @@
  */
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 #include "frictional_contact_sim/collision/collision_world.h"
@@ -75,6 +76,8 @@ public:
   /** @brief What goes through after the most rounds of this step is left: overlaps are not pushed out in it. */
   void beLenient();
   bool canGoBack() const;
+  /** @brief Whether an answer of this step went through the point without its row. */
+  bool isNeeded(const ContactId& id) const;
 
   const std::vector<ContactPoint>& points() const { return points_; }
   /** @brief How often the points of this step were changed. */
@@ -95,6 +98,8 @@ private:
     Use use = Use::IDLE;
     double impulse = 0.0;  ///< of the answer
     bool is_kept = false;  ///< was taken for a ghost and is none
+    /// Along the normal in the answer that asked for the row [m/s]; infinite where it was there at first.
+    double speed_without = std::numeric_limits<double>::infinity();
     int round = 0;  ///< that linearised it last
   };
   /// A body where an answer takes it.
@@ -102,6 +107,8 @@ private:
   {
     explicit Ahead(const Body& body);
     Eigen::VectorXd v;  ///< the answer
+    bool is_known = false;  ///< v is that of an answer to this step, and speeds_ its speed
+    bool has_moved = false;  ///< q_end, v_end, q are those of v
     Eigen::VectorXd q_end;
     Eigen::VectorXd v_end;
     Eigen::VectorXd q;  ///< next midpoint; of an impact the first

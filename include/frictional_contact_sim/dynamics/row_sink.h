@@ -68,6 +68,9 @@ public:
   /** @brief A row closes at this instant: an impact has something to solve. */
   void noteClosing() { closing_ = true; }
   bool closing() const { return closing_; }
+  /** @brief A row asks for restitution. */
+  void noteBounce() { bouncing_ = true; }
+  bool bouncing() const { return bouncing_; }
 
   const std::vector<RowRecord>& rowRecords() const { return row_records_; }
   const std::vector<RowRecord>& bilateralRecords() const { return bilateral_records_; }
@@ -85,6 +88,7 @@ public:
 private:
   int velocities_ = 0;
   bool closing_ = false;
+  bool bouncing_ = false;
   RowBuilder h_;
   RowBuilder g_;
   std::vector<double> w_;

@@ -35,6 +35,7 @@ struct StepContext
   double tolerance = 1e-8;  ///< of the solver, on E
   Regime regime = Regime::DYNAMIC;
   bool impact = false;  ///< an impact at one instant: rows at gap <= CONTACT_GAP, no forces
+  bool inelastic = false;  ///< no restitution: with it this step (impact) had no answer
   bool balance = false;  ///< nothing moves, forces balance (solver/equilibrium.h): rows at gap <= CONTACT_GAP
   const std::vector<ContactPoint>* points = nullptr;  ///< detected at the midpoint (impact: at q), valid for the step
   const Eigen::VectorXd* v_old = nullptr;  ///< velocities of all bodies at the start of the step

@@ -19,6 +19,8 @@ Eigen::VectorXd zeroPosition(const MultibodyModel& model);
 
 /** @brief Link poses, motion subspace, link inertias at q (nq). Writes data.reference. */
 void forwardKinematics(const MultibodyModel& model, const VectorIn& q, MultibodyData& data);
+/** @brief Of these data.reference and link_pose alone, the same numbers. */
+void computeLinkPoses(const MultibodyModel& model, const VectorIn& q, MultibodyData& data);
 
 /** @brief Link velocities at v (nv). Needs forwardKinematics. */
 void forwardVelocities(const MultibodyModel& model, const VectorIn& v, MultibodyData& data);

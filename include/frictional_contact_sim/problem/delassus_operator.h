@@ -68,9 +68,10 @@ public:
 
   /**
    * @brief Sets the blocks and block-row storage with the given pattern, values zero.
+   * @param begin laws + 1, into block_columns
    * @param block_columns for each block row, the blocks it touches in ascending order, the diagonal always among them
    */
-  void resizeSparse(const std::vector<Law>& laws, const std::vector<std::vector<int>>& block_columns);
+  void resizeSparse(const std::vector<Law>& laws, const std::vector<int>& begin, const std::vector<int>& block_columns);
   /** @brief Values of block (i, j): dimension(i) x dimension(j), column-major. @return nullptr when not stored. */
   double* block(int i, int j);
 

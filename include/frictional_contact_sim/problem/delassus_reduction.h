@@ -110,6 +110,9 @@ private:
   std::vector<int> loop_of_;  ///< nv, the loop a permuted velocity is in, or -1; empty without bilaterals
   std::vector<int> law_loop_begin_, law_loops_;  ///< loops each law touches
   std::vector<int> flags_;
+  std::vector<int> root_begin_, root_laws_;  ///< laws of each root of the elimination tree
+  std::vector<int> meeting_begin_, meeting_;  ///< laws that share one with each law, itself too, ascending
+  std::vector<int> mark_;
   std::vector<double> work_;
   Eigen::VectorXd half_force_;  ///< g
   Eigen::VectorXd x_;

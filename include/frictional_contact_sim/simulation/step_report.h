@@ -31,6 +31,7 @@ struct StepSummary
   double time = 0.0;  ///< at the end of the step [s]
   double dt = 0.0;  ///< [s]
   int contacts = 0;
+  int contact_rounds = 0;  ///< how often a look at an answer has changed the contact points of the step
   int velocities = 0;
   int bilaterals = 0;
   int islands = 0;
