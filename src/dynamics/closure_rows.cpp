@@ -226,7 +226,7 @@ void ClosureRows::moveAhead(const StepContext& context, const Solution& solution
         moveHalfStep(body, ahead->q_end, ahead->v_end, context.dt, ahead->q);
       }
       ahead->data.base_pose = basePose(body, 1.5 * context.dt);
-      forwardKinematics(body.model.tree, ahead->q, ahead->data);
+      computeLinkPoses(body.model.tree, ahead->q, ahead->data);
     }
 }
 

@@ -4,14 +4,6 @@
 
 namespace frictional_contact_sim
 {
-namespace
-{
-bool bounces(const Restitution& restitution)
-{
-  return restitution.normal > 0.0 || restitution.tangential > 0.0;
-}
-}  // namespace
-
 NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, const Restitution& restitution,
                         double dt)
 {
@@ -27,7 +19,7 @@ NormalShift normalShift(const NormalLaw& law, double gap, double old_velocity, c
     return result;
   }
   result.closing = approaching && gap + dt * old_velocity <= 0.0;
-  if (result.closing && bounces(restitution))
+  if (result.closing && restitution.bounces())
   {
     result.shift = restitution.normal * old_velocity;
     result.tangential = restitution.tangential;
@@ -43,7 +35,7 @@ NormalShift impactShift(double gap, double old_velocity, const Restitution& rest
   result.active = gap <= CONTACT_GAP || gap + 0.5 * dt * old_velocity < 0.0;
   result.closing = result.active && old_velocity < 0.0;
   result.tangential = result.closing ? restitution.tangential : 0.0;
-  if (bounces(restitution) || gap <= CONTACT_GAP)
+  if (restitution.bounces() || gap <= CONTACT_GAP)
     result.shift = restitution.normal * std::min(old_velocity, 0.0);
   else
     result.shift = 2.0 * gap / dt;

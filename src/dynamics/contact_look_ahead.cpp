@@ -44,11 +44,7 @@ void ContactSet::setPosesAhead(const StepContext& context, bool at_end)
   {
     Ahead& ahead = ahead_[b];
     ahead.data.base_pose = basePose(bodies_[b], time);
-    const Eigen::VectorXd& q = at_end ? ahead.q_end : ahead.q;
-    if (bodies_[b].model.solid)
-      bodies_[b].model.solid->setPoses(q, ahead.data);
-    else
-      computeLinkPoses(bodies_[b].model.tree, q, ahead.data);
+    setLinkPoses(bodies_[b].model, at_end ? ahead.q_end : ahead.q, ahead.data);
     world_.setPoses(static_cast<int>(b), ahead.data);
   }
 }

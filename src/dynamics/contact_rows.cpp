@@ -212,7 +212,7 @@ void ContactRows::add(const StepContext& context, int index, RowSink& sink)
   contact.tangential_shift =
       shift.tangential * Eigen::Vector2d(contact.tangent_1.dot(velocity), contact.tangent_2.dot(velocity));
   contact.count = contact.friction > 0.0 ? 3 : 1;
-  if (contact.closing && (restitution.normal > 0.0 || restitution.tangential > 0.0))
+  if (contact.closing && restitution.bounces())
     sink.noteBounce();
   if (contact.closing)
     sink.noteClosing();

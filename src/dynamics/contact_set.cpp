@@ -33,6 +33,15 @@ double alongNormal(const Body& body, int link, const Eigen::Vector3d& position, 
   }
   return speed;
 }
+
+/** Of candidates ordered by id, const or not. @return nullptr where there is none of that id */
+template <typename Candidates>
+auto candidateOf(Candidates& candidates, const ContactId& id) -> decltype(candidates.data())
+{
+  const auto found = std::lower_bound(candidates.begin(), candidates.end(), id,
+                                      [](const auto& candidate, const ContactId& b) { return candidate.point.id < b; });
+  return found != candidates.end() && found->point.id == id ? &*found : nullptr;
+}
 }  // namespace
 
 ContactSet::Ahead::Ahead(const Body& body)
@@ -185,9 +194,7 @@ void ContactSet::sortCandidates()
 
 ContactSet::Candidate* ContactSet::known(const ContactId& id)
 {
-  const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), id,
-                                      [](const Candidate& a, const ContactId& b) { return a.point.id < b; });
-  return found != candidates_.end() && found->point.id == id ? &*found : nullptr;
+  return candidateOf(candidates_, id);
 }
 
 const std::vector<ContactPoint>& ContactSet::find(const StepContext& context)
@@ -269,9 +276,8 @@ bool ContactSet::canGoBack() const
 
 bool ContactSet::isNeeded(const ContactId& id) const
 {
-  const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), id,
-                                      [](const Candidate& a, const ContactId& b) { return a.point.id < b; });
-  return found != candidates_.end() && found->point.id == id && std::isfinite(found->speed_without);
+  const Candidate* const candidate = candidateOf(candidates_, id);
+  return candidate != nullptr && std::isfinite(candidate->speed_without);
 }
 
 void ContactSet::beLenient()

@@ -1,7 +1,6 @@
 // The bias at the midpoint of the step: first guess, rounds after the solve, what free links end with; see assembly.h.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "frictional_contact_sim/dynamics/assembly.h"
@@ -170,11 +169,10 @@ double StepAssembly::missBias(const StepContext& context, const Solution& soluti
     Body& body = bodies_[b];
     const bool free = body.model.free_link && !acting_[b];
     // Most bodies of a large scene answer as they did before: what settled then is settled.
-    const double* const v = solution.v.data() + body.v_offset;
-    double* const settled = settled_.data() + body.v_offset;
-    const auto bytes = sizeof(double) * static_cast<size_t>(body.model.nv);
+    const auto v = solution.v.segment(body.v_offset, body.model.nv);
+    auto settled = settled_.segment(body.v_offset, body.model.nv);
     const char way = free ? 1 : 2;
-    if (is_settled_[b] == way && std::memcmp(v, settled, bytes) == 0)
+    if (is_settled_[b] == way && settled == v)
     {
       misses_[b] = 0.0;
       continue;
@@ -183,7 +181,7 @@ double StepAssembly::missBias(const StepContext& context, const Solution& soluti
                  : free             ? freeMiss(context, solution, body)
                                     : biasMiss(context, solution, body);
     is_settled_[b] = misses_[b] == 0.0 ? way : 0;
-    std::memcpy(settled, v, bytes);
+    settled = v;
     if (!std::isfinite(misses_[b]))
       return misses_[b];
     worst = std::max(worst, misses_[b]);

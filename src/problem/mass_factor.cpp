@@ -76,13 +76,15 @@ void MassFactor::findChanges(const SparseRows& M)
     return std::memcmp(values + begin, factored_.data() + begin, sizeof(double) * static_cast<size_t>(end - begin)) !=
            0;
   };
-  if (!factored_.empty())
+  if (!factored_.empty())  // else all have changed: analyse()
+  {
     std::fill(changed_.begin(), changed_.end(), 0);
-  if (!factored_.empty() && !differs(0, static_cast<int>(M.nonZeros())))
-    return;
-  for (size_t row = 0; row < root_.size() && !factored_.empty(); ++row)
-    if (differs(outer_[row], outer_[row + 1]))
-      changed_[static_cast<size_t>(root_[static_cast<size_t>(inverse_permutation_[row])])] = 1;
+    if (!differs(0, static_cast<int>(M.nonZeros())))
+      return;
+    for (size_t row = 0; row < root_.size(); ++row)
+      if (differs(outer_[row], outer_[row + 1]))
+        changed_[static_cast<size_t>(root_[static_cast<size_t>(inverse_permutation_[row])])] = 1;
+  }
   factored_.assign(values, values + M.nonZeros());
 }
 

@@ -228,11 +228,8 @@ void Simulator::Impl::solveImpact()
     assembly.assembleProblem(context);
     solver.solve(assembly.problem(), guess, true, false, result);
     again = result.status == SolverStatus::CONVERGED ? assembly.again(context, result.solution, true) : Again::NO;
-    if (again == Again::NO && mayDropRestitution())
-    {
-      context.inelastic = true;
+    if (again == Again::NO && dropRestitution())
       again = Again::FROM_GUESS;
-    }
   } while (again == Again::FROM_ANSWER || again == Again::FROM_GUESS);
   is_solved = true;
   if (again == Again::NEVER)

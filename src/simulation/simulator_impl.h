@@ -36,7 +36,7 @@ struct Simulator::Impl
 
   void beginRows();
   bool mayRecoverLess() const;
-  bool mayDropRestitution() const;
+  bool dropRestitution();
   std::vector<const ContactPoint*> unmetPushes() const;
   bool pushesOut() const;
   bool pushesOut(const ContactPoint& point) const;

@@ -127,11 +127,8 @@ void Simulator::Impl::solveStep()
       askLess();
       again = Again::FROM_GUESS;
     }
-    if (again == Again::NO && mayDropRestitution())
-    {
-      context.inelastic = true;
+    if (again == Again::NO && dropRestitution())
       again = Again::FROM_GUESS;
-    }
   } while (again == Again::FROM_GUESS || again == Again::FROM_ANSWER || again == Again::FORCES);
   if (isMotion(result.solution))
     assembly.settleFreeLinks(result.solution);
@@ -212,11 +209,16 @@ bool Simulator::Impl::mayRecoverLess() const
   return context.normal_law.recovery_speed > 0.0 && !context.wedged.empty();
 }
 
-/** After a solve without an answer: a link that friction jams cannot part again at the speed it came with. */
-bool Simulator::Impl::mayDropRestitution() const
+/**
+ * After a solve without an answer: a link that friction jams cannot part again at the speed it came with.
+ * @return whether there is restitution to drop: the rows are others then
+ */
+bool Simulator::Impl::dropRestitution()
 {
-  return result.status != SolverStatus::CONVERGED && mayGoOn(result.status) && !context.inelastic &&
-         assembly.bouncing();
+  if (result.status == SolverStatus::CONVERGED || !mayGoOn(result.status) || context.inelastic || !assembly.bouncing())
+    return false;
+  context.inelastic = true;
+  return true;
 }
 
 /** Points that are pushed out and whose law the last solve has not met. */

@@ -164,6 +164,8 @@ void moveToEnd(Body& body, const VectorIn& v, double dt);
 
 /** @brief Poses of `data` at q, its base_pose set. */
 void setPoses(const BodyModel& model, const Eigen::VectorXd& q, MultibodyData& data);
+/** @brief Of these the links' alone, for who looks ahead and asks for no mass matrix. */
+void setLinkPoses(const BodyModel& model, const Eigen::VectorXd& q, MultibodyData& data);
 
 /** @brief Poses and mass matrix of `body.middle` at the state itself, for an impact. */
 void moveToImpact(Body& body);

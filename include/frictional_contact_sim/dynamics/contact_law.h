@@ -43,6 +43,8 @@ struct Restitution
 {
   double normal = 0.0;  ///< e [-] in [0, 1]
   double tangential = 0.0;  ///< e_T [-] in [0, 1]
+
+  bool bounces() const { return normal > 0.0 || tangential > 0.0; }
 };
 
 struct NormalShift
